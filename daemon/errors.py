@@ -1,0 +1,50 @@
+"""Everything that can go wrong for a reason a person can do something about: what, where, and what to do.
+
+Raise one where the fact is known; `cli` turns it into an exit code and `jobs/runner` into a failed job.
+"""
+
+from __future__ import annotations
+
+
+class LinedrawError(Exception):
+    """`str(error)` is a sentence that says what is wrong, where, and after the last colon what to do."""
+
+    exit_code = 1
+
+
+class BadPicture(LinedrawError):
+    """The file is no picture we can read, or one we refuse to read."""
+
+
+class NothingToDraw(LinedrawError):
+    """The page holds no line."""
+
+
+class PlanningFailed(LinedrawError):
+    """The worker died, ran out of memory or out of time over this picture."""
+
+
+class OutOfReach(LinedrawError):
+    """The drawing leaves the area that the machine reaches."""
+
+
+class DiskTrouble(LinedrawError):
+    """A folder cannot be written: full, read-only, missing, or not ours."""
+
+
+class SettingsError(LinedrawError):
+    """A setting is unknown, of the wrong type, or contradicts another; or the command line is."""
+
+    exit_code = 2
+
+
+class NoMachine(LinedrawError):
+    """No machine, more than one, or one that is in use by another program."""
+
+    exit_code = 3
+
+
+class MachineFault(LinedrawError):
+    """The machine refused, alarmed, restarted, fell silent or was unplugged."""
+
+    exit_code = 4

@@ -1,0 +1,1 @@
+"""Corners become vertices, lines become edges, the graph falls into strokes."""

@@ -1,0 +1,1 @@
+"""Every job is remembered, planned in a worker, and handed to the machine once."""

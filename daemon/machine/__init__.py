@@ -1,0 +1,1 @@
+"""One loop moves bytes between a session and a port: serial, TCP, simulated."""

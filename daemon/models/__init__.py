@@ -1,0 +1,1 @@
+"""The shipped network and its manifest."""

@@ -1,0 +1,134 @@
+"""The values that travel from room to room: frozen, with the unit of every number in its name.
+
+Pixel coordinates are (x, y), x to the right, y down, the centre of the first pixel is (0, 0).
+Machine coordinates are millimetres, x to the right, y up, seen from above the sheet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Grey: TypeAlias = NDArray[np.uint8]
+"""(H, W) uint8, 0 = black ink, 255 = white paper."""
+Map: TypeAlias = NDArray[np.float32]
+"""(H, W) float32 in 0..1."""
+Points: TypeAlias = NDArray[np.float64]
+"""(N, 2) float64, one (x, y) a row."""
+Affine: TypeAlias = NDArray[np.float64]
+"""(2, 3) float64: q = A[:, :2] @ p + A[:, 2]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PageImage:
+    """A page as the rooms see it: upright, dark ink on light paper, bounded in size."""
+
+    grey: Grey
+    to_given: Affine
+    """Page px to px of the given picture (upright, as a viewer shows it)."""
+    given_width_px: int
+    given_height_px: int
+    sha256: str
+    """Of the given file's bytes, hexadecimal."""
+    line_width_px: float | None = None
+    """Full width of the pen line on this page, where it has been estimated."""
+    px_per_mm: float | None = None
+    """Of the given picture, where its file states a resolution."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """What each pixel of a page is: three maps of the page's own shape that sum to 1."""
+
+    background: Map
+    lines: Map
+    corners: Map
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Edge:
+    """A line between two vertices, as a polyline in px from vertex `start` to vertex `end`.
+
+    A closed curve without a corner is an edge whose start and end are one vertex.
+    """
+
+    start: int
+    end: int
+    polyline: Points
+    plausibility: float
+    """Mean response of the lines channel along it, 0..1 (Raghav et al. 2020, Eq. 2)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineGraph:
+    """Vertices (V, 2) in px and the edges between them. Every edge ends in two vertices of the graph."""
+
+    vertices: Points
+    edges: tuple[Edge, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stroke:
+    """What is drawn between engaging and disengaging the pen: one polyline. A single point is a dot."""
+
+    points: Points
+    pen: int = 0
+
+    @property
+    def length(self) -> float:
+        return float(np.hypot(*np.diff(self.points, axis=0).T).sum())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """Strokes in px of the picture whose size is stated; every edge is drawn exactly once."""
+
+    strokes: tuple[Stroke, ...]
+    width_px: int
+    height_px: int
+    px_per_mm: float | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Toolpath:
+    """Strokes in machine mm, in drawing order; between them the machine travels with the pen up.
+
+    The pen starts at `start_mm` and is parked at `park_mm`.
+    """
+
+    strokes: tuple[Stroke, ...]
+    from_px: Affine
+    """Drawing px to machine mm."""
+    start_mm: tuple[float, float] = (0.0, 0.0)
+    park_mm: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def drawn_mm(self) -> float:
+        return float(sum(stroke.length for stroke in self.strokes))
+
+    @property
+    def travelled_mm(self) -> float:
+        stops = [np.asarray(self.start_mm, float)]
+        for stroke in self.strokes:
+            stops += [stroke.points[0], stroke.points[-1]]
+        stops.append(np.asarray(self.park_mm, float))
+        return float(sum(np.hypot(*(b - a)) for a, b in zip(stops[::2], stops[1::2], strict=True)))
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramLine:
+    """One line for the controller and the stroke it belongs to (None before the first and after the last)."""
+
+    text: str
+    stroke: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What is sent to a controller, line by line, comments removed."""
+
+    lines: tuple[ProgramLine, ...]
+    strokes: int

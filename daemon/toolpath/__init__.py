@@ -1,0 +1,1 @@
+"""Strokes are simplified, put in order, and placed on the machine."""

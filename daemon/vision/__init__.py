@@ -1,0 +1,1 @@
+"""A page is segmented into background, lines and corners by the network."""

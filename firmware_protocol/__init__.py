@@ -1,0 +1,1 @@
+"""What pen-holding machines say and expect: sessions without I/O, clock or thread, and simulators that answer them."""

@@ -1,0 +1,113 @@
+"""What every session offers: bytes and the time come in, events and bytes go out. No port, no clock, no thread.
+
+The one loop that moves bytes (`daemon/machine/link.py`) does, again and again:
+
+    events = session.receive(data, now)      # what the machine said
+    events += session.expire(now)            # what it should have said by now
+    port.write(session.data_to_send(now))    # what we have to say
+    wait until session.deadline() or data
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Protocol, TypeAlias
+
+
+class Verdict(Enum):
+    """How a job ended. `FINISHED` is said only when the last ink is on the paper."""
+
+    FINISHED = "finished"
+    STOPPED = "stopped"
+    REJECTED = "rejected"
+    ALARM = "alarm"
+    RESTARTED = "restarted"
+    SILENT = "silent"
+    UNPLUGGED = "unplugged"
+
+
+@dataclass(frozen=True, slots=True)
+class Ready:
+    """The machine has introduced itself and takes a job."""
+
+    firmware: str
+    buffer_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class NotReady:
+    """Something answers, but it takes no job: `why` says what, and what to do."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """The machine has acknowledged line `line` (0-based) of the job: parsed and planned, not yet drawn."""
+
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """A status report: the controller's own word for its state, and where the pen is."""
+
+    state: str
+    position_mm: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The job is over, once and for ever: no line of it is sent after this event.
+
+    strokes_certain: the first n strokes are certainly drawn whole. strokes_possible: not one stroke after the first n
+    has been touched. position_known: the machine still knows where its pen is. pen_lifted: the pen is known to be up.
+    why: a sentence that says what happened, where (line, its text) and what to do.
+    """
+
+    verdict: Verdict
+    strokes_certain: int
+    strokes_possible: int
+    position_known: bool
+    pen_lifted: bool
+    why: str
+
+
+Event: TypeAlias = Ready | NotReady | Accepted | Status | Ended
+
+
+class JobLine(Protocol):
+    """One line of a job and the stroke it belongs to (None: before the first or after the last)."""
+
+    @property
+    def text(self) -> str: ...
+
+    @property
+    def stroke(self) -> int | None: ...
+
+
+class Session(Protocol):
+    """One conversation with one machine, from opening the port to closing it."""
+
+    def receive(self, data: bytes, now: float) -> list[Event]:
+        """Take what came from the machine, however it is chunked. Noise raises nothing but ProtocolError."""
+
+    def expire(self, now: float) -> list[Event]:
+        """What follows from silence: call it when `deadline()` has come."""
+
+    def deadline(self) -> float | None:
+        """When `expire` or `data_to_send` wants to be called again even if nothing comes; None: only on data."""
+
+    def data_to_send(self, now: float) -> bytes:
+        """What is to be written now; empty when nothing may be."""
+
+    def start(self, job: Sequence[JobLine], now: float) -> None:
+        """Begin a job. Raises LocalProtocolError when the machine is not ready for one."""
+
+    def stop(self, now: float) -> None:
+        """Stop at once without losing the position, lift the pen, end the job with `Ended(STOPPED)`."""
+
+    def unplugged(self, now: float) -> list[Event]:
+        """The port is gone: what that means for the job."""

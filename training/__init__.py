@@ -1,0 +1,1 @@
+"""Where the network comes from: data, rendering, network, loss, training, evaluation, export."""
