@@ -1,0 +1,96 @@
+"""The settings are checked at the door, and an error names its place and its cure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from daemon.config import Options, ServoPenSettings, Settings, load_settings
+from daemon.errors import SettingsError
+
+
+def settings(text: str, folder: Path, *, device: str | None = None, port: str | None = None) -> Settings:
+    file = folder / "linedrawd.toml"
+    file.write_text(text, encoding="utf-8")
+    return load_settings(Options(config=file, device=device, port=port), environment={"HOME": str(folder)})
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[machines.left]\ndraw_mms = 3", "[machines.left] draw_mms is unknown: did you mean draw_mm_s?"),
+        ("[plannning]\nthreads = 1", "plannning is unknown: did you mean planning?"),
+        ("[planning]\ntime_limits = 3", "[planning] time_limits is unknown: did you mean time_limit_s?"),
+        ("[machines.left.pen]\nkind = 'z'\nupmm = 3", "upmm is unknown: did you mean up_mm?"),
+        ("[machines.left.pen]\nkind = 'servo'\nup = 3", "up is unknown: did you mean up_s?"),
+        ("[paths]\nstate = 'x'", "[paths] state is unknown: did you mean state_dir?"),
+        ("[machines.left]\nqqq = 1", "[machines.left] qqq is unknown: known are device, url"),
+        ("[machines.left]\nbaud = 'fast'", "[machines.left] baud: Input should be a valid integer"),
+        ("[machines.left]\nreach_mm = 3", "[machines.left] reach_mm: Input should be a valid tuple"),
+        ("machines = 3", "machines: Input should be a valid dictionary"),
+        ("[machines]\nleft = 3", "[machines] left: "),
+        ("paths = 3", "paths: Input should be a valid dictionary"),
+        ("[sheet]\nerror_mm = inf", "[sheet] error_mm: Input should be a finite number"),
+        ("[machines.left]\nurl = 'usb:3'", "use auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"),
+        ("[machines.left]\nurl = 'sim://emco'", "use sim://grbl"),
+        ("[machines.left]\ndevice = 'emco'", "device 'emco' comes with a later version"),
+        ("[machines.left.pen]\nkind = 'z'\nup_mm = -1", "up_mm = -1 must be above down_mm = 0"),
+        ("[machines.left]\n[machines.right]", "2 machines are set, this version drives one"),
+        ("[planning", "is not TOML"),
+    ],
+)
+def test_a_wrong_setting_is_refused_with_its_place_and_its_cure(text: str, sentence: str, tmp_path: Path) -> None:
+    with pytest.raises(SettingsError) as refused:
+        settings(text, tmp_path)
+    assert sentence in str(refused.value)
+    assert "linedrawd.toml" in str(refused.value)
+
+
+def test_a_settings_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=r"absent\.toml cannot be read .*--config"):
+        load_settings(Options(config=tmp_path / "absent.toml"), environment={})
+
+
+def test_no_machine_is_ever_chosen_by_itself() -> None:
+    with pytest.raises(SettingsError, match="give --device grbl"):
+        load_settings(Options(), environment={"HOME": "/nonexistent"}, machine_needed=True)
+
+
+def test_a_machine_is_simulated_only_where_somebody_asked_for_it(tmp_path: Path) -> None:
+    machine = settings("", tmp_path, device="grbl").machines["plotter"]
+    assert (machine.url, machine.simulated, machine.asks_for_sheets) == ("auto", False, True)
+    machine = settings("", tmp_path, device="sim").machines["plotter"]
+    assert (machine.url, machine.simulated, machine.asks_for_sheets) == ("sim://grbl", True, False)
+
+
+def test_the_command_line_wins_over_the_file(tmp_path: Path) -> None:
+    machine = settings("[machines.left]\nurl = 'auto'\nbaud = 9600", tmp_path, port="/dev/ttyACM1").machines["left"]
+    assert (machine.url, machine.baud) == ("serial:///dev/ttyACM1", 9600)
+
+
+def test_a_later_device_is_refused_on_the_command_line_too(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="comes with a later version"):
+        settings("", tmp_path, device="dobot")
+
+
+def test_a_servo_pen_is_read(tmp_path: Path) -> None:
+    pen = settings("[machines.a.pen]\nkind = 'servo'\nup_s = 10\ndown_s = 90", tmp_path).machines["a"].pen
+    assert pen == ServoPenSettings(kind="servo", up_s=10, down_s=90, dwell_s=0.2)
+
+
+def test_everything_lies_below_a_chosen_state_folder(tmp_path: Path) -> None:
+    paths = load_settings(Options(state_dir=tmp_path / "s"), environment={"XDG_RUNTIME_DIR": "/run/user/1"}).paths
+    assert {paths.inbox.parent, paths.log_dir.parent, paths.runtime_dir.parent} == {tmp_path / "s"}
+
+
+def test_the_folders_of_the_service_are_taken_from_its_environment() -> None:
+    environment = {"STATE_DIRECTORY": "/s:/t", "LOGS_DIRECTORY": "/l", "RUNTIME_DIRECTORY": "/r"}
+    paths = load_settings(Options(), environment=environment).paths
+    assert (paths.state_dir, paths.inbox, paths.log_dir) == (Path("/s"), Path("/s/inbox"), Path("/l"))
+    assert paths.runtime_dir == Path("/r")
+
+
+def test_settings_travel_to_the_worker_and_back(tmp_path: Path) -> None:
+    given = settings("[machines.a.pen]\nkind = 'servo'\n[sheet]\nbox_mm = [10, 20]", tmp_path)
+    assert Settings.model_validate_json(given.model_dump_json()) == given
