@@ -1,0 +1,139 @@
+"""How well drawn lines cover the ink of a page: precision, recall, their harmonic mean, and overlap."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.ink import Mask, ink_mask, thin
+from daemon.shapes import Grey, PageImage, Points
+
+PRECISION_WITHIN_PX = 1.0
+RECALL_WITHIN_PX = 1.5
+
+
+@dataclass(frozen=True, slots=True)
+class Fidelity:
+    """Shares in 0..1, higher is better. Where neither ink nor line exists all are 1, where only one of them does 0."""
+
+    precision: float
+    """Share of the drawn length that lies on the page's ink, one pixel beside it allowed."""
+    recall: float
+    """Share of the ink's centre line within max(1.5 px, half a line width) of a drawn line."""
+    f1: float
+    """Harmonic mean of precision and recall."""
+    iou: float
+    """Intersection over union of the page's ink and the lines, drawn again at the page's line width."""
+
+
+def fidelity(page: PageImage, strokes: Sequence[Points], *, line_width_px: float) -> Fidelity:
+    """Compare lines with the ink of a page.
+
+    strokes: each (N, 2) in px of this page, N >= 1; a single point is a dot and counts as one line width of line.
+    line_width_px: full width of the pen line on this page, > 0. Parts off the page are lines without ink. Raises
+    ValueError when the line width is not positive. Distances are from sample points, at most half a pixel apart, to
+    pixel centres; the centre line is the thinned ink.
+    """
+    if not line_width_px > 0:
+        raise ValueError(f"line width {line_width_px} px: it must be positive")
+    ink = ink_mask(page.grey)
+    precision = _precision(ink, strokes, line_width_px)
+    recall = _recall(ink, strokes, max(RECALL_WITHIN_PX, line_width_px / 2))
+    f1 = 2 * precision * recall / (precision + recall) if precision + recall else 0.0
+    return Fidelity(precision, recall, f1, _overlap(ink, within(strokes, ink.shape, line_width_px / 2)))
+
+
+def line_width_px(grey: Grey) -> float:
+    """Full width of the pen line on a page, estimated: inked area by length of centre line, in px, at least 1.
+
+    grey: uint8 (H, W). Filled areas are no lines: twice the median distance from the centre line to the paper bounds
+    the estimate.
+    """
+    ink = ink_mask(grey)
+    centre = thin(ink)
+    if not centre.any():
+        return 1.0
+    to_paper = cv2.distanceTransform(np.pad(ink, 1).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    bound = 2.0 * float(np.median(to_paper[1:-1, 1:-1][centre]))
+    return max(1.0, min(float(ink.sum()) / _length(centre), bound))
+
+
+def within(strokes: Sequence[Points], shape: tuple[int, ...], radius_px: float) -> Mask:
+    """Pixels whose centre lies within a radius of a line: the line drawn `2 * radius_px` wide.
+
+    strokes: each (N, 2) in px, N >= 1. shape: (H, W) of the bool mask returned. radius_px: > 0.
+    """
+    height, width = shape
+    near = np.zeros((height, width), bool)
+    points = _samples(strokes, min(0.5, radius_px / 3) if radius_px < 4 else radius_px / 6)[0]
+    pixels = np.rint(points).astype(np.intp)
+    off = points - pixels
+    reach = int(radius_px + 0.5)
+    for dy in range(-reach, reach + 1):
+        for dx in range(-reach, reach + 1):
+            hit = (off[:, 0] - dx) ** 2 + (off[:, 1] - dy) ** 2 <= radius_px**2
+            x, y = pixels[hit, 0] + dx, pixels[hit, 1] + dy
+            on = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+            near[y[on], x[on]] = True
+    return near
+
+
+def _precision(ink: Mask, strokes: Sequence[Points], dot_px: float) -> float:
+    points, lengths = _samples(strokes, 0.5, dot_px=dot_px)
+    total = float(lengths.sum())
+    if not total:
+        return 0.0 if ink.any() else 1.0
+    near = _grown(ink, PRECISION_WITHIN_PX)
+    x, y = np.rint(points).astype(np.intp).T
+    on = (x >= 0) & (x < ink.shape[1]) & (y >= 0) & (y < ink.shape[0])
+    on[on] = near[y[on], x[on]]
+    return float(lengths[on].sum()) / total
+
+
+def _recall(ink: Mask, strokes: Sequence[Points], tolerance_px: float) -> float:
+    centre = thin(ink)
+    if not centre.any():
+        return 0.0 if strokes else 1.0
+    return float(within(strokes, ink.shape, tolerance_px)[centre].mean())
+
+
+def _overlap(ink: Mask, drawn: Mask) -> float:
+    union = float((ink | drawn).sum())
+    return float((ink & drawn).sum()) / union if union else 1.0
+
+
+def _grown(mask: Mask, by_px: float) -> Mask:
+    away = np.where(mask, 0, 1).astype(np.uint8)
+    if away.all():
+        return mask
+    distance = cv2.distanceTransform(away, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.asarray(distance <= by_px)
+
+
+def _samples(strokes: Sequence[Points], step_px: float, *, dot_px: float = 0.0) -> tuple[Points, NDArray[np.float64]]:
+    """Points along all strokes, at most `step_px` apart, (S, 2), and the length that each stands for, (S,)."""
+    segments = [np.hstack([s[:-1], s[1:]]) if len(s) > 1 else np.hstack([s, s]) for s in strokes]
+    ends = np.concatenate([np.empty((0, 4)), *segments])
+    lengths = np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1])
+    counts = np.maximum(1, np.ceil(lengths / step_px)).astype(np.intp) + 1
+    first = np.cumsum(counts) - counts
+    part = (np.arange(counts.sum()) - np.repeat(first, counts)) / np.repeat(counts - 1, counts)
+    start, end = np.repeat(ends[:, :2], counts, axis=0), np.repeat(ends[:, 2:], counts, axis=0)
+    # The end points of a segment stand for half as much as the points between them.
+    weight = np.where((part == 0) | (part == 1), 0.5, 1.0)
+    dots = np.concatenate([np.zeros(0, bool), *(np.full(max(1, len(s) - 1), s.shape[0] == 1) for s in strokes)])
+    share = np.where(dots, dot_px, lengths) / (counts - 1)
+    return start + (end - start) * part[:, None], weight * np.repeat(share, counts)
+
+
+def _length(centre: Mask) -> float:
+    """Length in px of a line one pixel wide: steps to the side count 1, diagonal ones that cut no corner sqrt(2)."""
+    c = np.pad(centre, 1)
+    straight = (c[:, 1:] & c[:, :-1]).sum() + (c[1:] & c[:-1]).sum()
+    down = c[1:, 1:] & c[:-1, :-1] & ~c[1:, :-1] & ~c[:-1, 1:]
+    up = c[:-1, 1:] & c[1:, :-1] & ~c[1:, 1:] & ~c[:-1, :-1]
+    return max(1.0, float(straight + np.sqrt(2) * (down.sum() + up.sum())))
