@@ -6,19 +6,22 @@ Machine coordinates are millimetres, x to the right, y up, seen from above the s
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:  # A process that only streams a Program need not load numpy.
+    import numpy as np
+    from numpy.typing import NDArray
 
-Grey: TypeAlias = NDArray[np.uint8]
+Grey: TypeAlias = "NDArray[np.uint8]"
 """(H, W) uint8, 0 = black ink, 255 = white paper."""
-Map: TypeAlias = NDArray[np.float32]
+Map: TypeAlias = "NDArray[np.float32]"
 """(H, W) float32 in 0..1."""
-Points: TypeAlias = NDArray[np.float64]
+Points: TypeAlias = "NDArray[np.float64]"
 """(N, 2) float64, one (x, y) a row."""
-Affine: TypeAlias = NDArray[np.float64]
+Affine: TypeAlias = "NDArray[np.float64]"
 """(2, 3) float64: q = A[:, :2] @ p + A[:, 2]."""
 
 
@@ -79,7 +82,7 @@ class Stroke:
 
     @property
     def length(self) -> float:
-        return float(np.hypot(*np.diff(self.points, axis=0).T).sum())
+        return math.fsum(math.dist(a, b) for a, b in pairwise(self.points.tolist()))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,15 +110,13 @@ class Toolpath:
 
     @property
     def drawn_mm(self) -> float:
-        return float(sum(stroke.length for stroke in self.strokes))
+        return math.fsum(stroke.length for stroke in self.strokes)
 
     @property
     def travelled_mm(self) -> float:
-        stops = [np.asarray(self.start_mm, float)]
-        for stroke in self.strokes:
-            stops += [stroke.points[0], stroke.points[-1]]
-        stops.append(np.asarray(self.park_mm, float))
-        return float(sum(np.hypot(*(b - a)) for a, b in zip(stops[::2], stops[1::2], strict=True)))
+        ends = [tuple(end) for stroke in self.strokes for end in (stroke.points[0], stroke.points[-1])]
+        stops = [self.start_mm, *ends, self.park_mm]
+        return math.fsum(math.dist(a, b) for a, b in zip(stops[::2], stops[1::2], strict=True))
 
 
 @dataclass(frozen=True, slots=True)
