@@ -1,0 +1,94 @@
+"""From a drawing in px to a toolpath in mm: placed in the box, inside the reach, nothing lost."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from daemon.errors import NothingToDraw, OutOfReach
+from daemon.shapes import Drawing, Stroke
+from daemon.toolpath.place import place, placement
+from daemon.toolpath.plan import plan_toolpath
+
+sizes = st.integers(1, 2000)
+lengths = st.floats(1, 500)
+
+
+def drawing(*strokes: list[tuple[float, float]], width_px: int = 101, height_px: int = 101) -> Drawing:
+    return Drawing(tuple(Stroke(np.array(points, float)) for points in strokes), width_px, height_px)
+
+
+@given(sizes, sizes, lengths, lengths)
+def test_the_picture_touches_the_box_on_two_sides_and_is_centred(
+    width_px: int, height_px: int, width_mm: float, height_mm: float
+) -> None:
+    from_px = placement(width_px, height_px, box_mm=(width_mm, height_mm), box_origin_mm=(25, 30))
+    low, high = np.sort(place(np.array([[-0.5, -0.5], [width_px - 0.5, height_px - 0.5]]), from_px), axis=0)
+    left, bottom = low - (25, 30)
+    right, top = np.array([25 + width_mm, 30 + height_mm]) - high
+    assert min(left, bottom) == pytest.approx(0, abs=1e-6)
+    assert (left, bottom) == (pytest.approx(right, abs=1e-6), pytest.approx(top, abs=1e-6))
+
+
+def test_y_points_up_and_proportions_are_kept() -> None:
+    from_px = placement(200, 100, box_mm=(64, 64), box_origin_mm=(25, 25))
+    corners = place(np.array([[-0.5, -0.5], [199.5, 99.5]]), from_px)
+    assert corners.tolist() == [[25, 73], [89, 41]]
+
+
+@pytest.mark.parametrize(("width_px", "box_mm"), [(0, (64, 64)), (10, (0, 64))])
+def test_an_empty_picture_or_box_is_refused(width_px: int, box_mm: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match="give sizes"):
+        placement(width_px, 10, box_mm=box_mm, box_origin_mm=(0, 0))
+
+
+@settings(max_examples=50)
+@given(
+    st.lists(
+        st.lists(st.tuples(st.floats(-0.5, 100.5), st.floats(-0.5, 100.5)), min_size=1, max_size=8),
+        min_size=1,
+        max_size=6,
+    )
+)
+def test_every_stroke_arrives_inside_the_box_with_its_length(strokes: list[list[tuple[float, float]]]) -> None:
+    given_drawing = drawing(*strokes)
+    toolpath = plan_toolpath(given_drawing, error_mm=0.0, box_mm=(64, 64), box_origin_mm=(25, 25))
+    points = np.concatenate([stroke.points for stroke in toolpath.strokes])
+    assert len(toolpath.strokes) == len(strokes)
+    assert points.min() >= 25 - 1e-9
+    assert points.max() <= 89 + 1e-9
+    given_px = sum(stroke.length for stroke in given_drawing.strokes)
+    assert toolpath.drawn_mm == pytest.approx(given_px * 64 / 101, abs=1e-6)
+
+
+def test_the_first_stroke_and_point_out_of_reach_is_named() -> None:
+    leaves_below = drawing([(0, 0), (50, 0)], [(0, 0), (10, 10), (50, 100)])
+    with pytest.raises(OutOfReach, match=r"stroke 1, point 2 lies at \(57\.0, 25\.3\) mm.*y 30 to 130 mm: make"):
+        plan_toolpath(leaves_below, reach_mm=(100, 100), reach_low_mm=(0, 30), park_mm=(0, 30))
+
+
+def test_a_park_position_out_of_reach_is_named() -> None:
+    with pytest.raises(OutOfReach, match="the park position lies at"):
+        plan_toolpath(drawing([(0, 0), (50, 0)]), reach_mm=(100, 100), park_mm=(150, 0))
+
+
+def test_a_drawing_that_just_fits_is_drawn() -> None:
+    edge = drawing([(-0.5, -0.5), (100.5, 100.5)])
+    assert plan_toolpath(edge, reach_mm=(89, 89)).strokes[0].points.max() == pytest.approx(89)
+
+
+def test_a_drawing_without_strokes_is_refused() -> None:
+    with pytest.raises(NothingToDraw, match="holds no line"):
+        plan_toolpath(drawing())
+
+
+def test_points_closer_to_a_line_than_the_error_are_left_out() -> None:
+    wavy = [(float(x), 50 + 0.03 * (x % 2)) for x in range(101)]
+    assert len(plan_toolpath(drawing(wavy), error_mm=0.05).strokes[0].points) == 2
+
+
+def test_start_and_park_position_are_told_on() -> None:
+    toolpath = plan_toolpath(drawing([(0, 0), (50, 0)]), start_mm=(1, 2), park_mm=(3, 4))
+    assert (toolpath.start_mm, toolpath.park_mm) == ((1, 2), (3, 4))

@@ -1,0 +1,77 @@
+"""Polylines with fewer points, within a stated error."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from daemon.shapes import Points
+from daemon.toolpath.simplify import simplify
+from tests.daemon.toolpath.strokes import polylines
+
+errors = st.floats(0, 20)
+
+
+def distance(points: Points, polyline: Points) -> Points:
+    """Of each point to the polyline."""
+    a, b = (polyline, polyline) if len(polyline) == 1 else (polyline[:-1], polyline[1:])
+    along = b - a
+    share = ((points[:, None] - a) * along).sum(-1) / np.maximum((along**2).sum(-1), 1e-12)
+    foot = a + np.clip(share, 0, 1)[..., None] * along
+    off: Points = np.linalg.norm(points[:, None] - foot, axis=-1).min(axis=1)
+    return off
+
+
+@given(polylines(most=40), errors)
+def test_no_given_point_lies_further_than_the_error_from_the_result(points: Points, error: float) -> None:
+    assert distance(points, simplify(points, error=error)).max() <= error + 1e-6
+
+
+@given(polylines(most=40), errors)
+def test_ends_stay_exactly_where_they_were(points: Points, error: float) -> None:
+    result = simplify(points, error=error)
+    assert (result[0] == points[0]).all()
+    assert (result[-1] == points[-1]).all()
+
+
+@given(polylines(most=40), errors)
+def test_the_result_is_never_longer_and_repeats_no_point(points: Points, error: float) -> None:
+    result = simplify(points, error=error)
+    lengths = [np.linalg.norm(np.diff(some, axis=0), axis=1) for some in (points, result)]
+    assert lengths[1].sum() <= lengths[0].sum() + 1e-9
+    assert (lengths[1] > 0).all()
+
+
+def test_a_straight_line_keeps_its_two_ends() -> None:
+    line = np.linspace([0, 0], [30, 10], 1000)
+    assert np.array_equal(simplify(line, error=1e-6), line[[0, -1]])
+
+
+def test_a_path_that_folds_back_beyond_its_end_keeps_the_fold() -> None:
+    assert len(simplify(np.array([[0.0, 0], [10, 0], [5, 0]]), error=0.05)) == 3
+
+
+def test_a_circle_stays_closed() -> None:
+    angle = np.linspace(0, 2 * np.pi, 400)
+    circle = 10 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    circle[-1] = circle[0]
+    result = simplify(circle, error=0.05)
+    assert (result[0] == result[-1]).all()
+    assert 12 < len(result) < 64
+
+
+def test_a_ring_smaller_than_the_error_is_a_dot() -> None:
+    assert len(simplify(np.array([[0.0, 0], [0.01, 0], [0.01, 0.01], [0, 0]]), error=0.05)) == 1
+
+
+def test_a_zigzag_deeper_than_the_recursion_limit_needs_no_recursion() -> None:
+    zigzag = np.stack([np.arange(5000.0), np.arange(5000) % 2 * 10.0], axis=1)
+    assert len(simplify(zigzag, error=0.05)) == 5000
+
+
+@pytest.mark.parametrize(("points", "error"), [(np.zeros((0, 2)), 1.0), (np.zeros((3, 2)), -1.0)])
+def test_no_point_or_a_negative_error_is_refused(points: Points, error: float) -> None:
+    with pytest.raises(ValueError, match="give points"):
+        simplify(points, error=error)
