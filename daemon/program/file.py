@@ -1,0 +1,66 @@
+"""A program as a text file: readable comments on disk, and the same program when it is read back."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from daemon.errors import DiskTrouble, LinedrawError
+from daemon.shapes import Program, ProgramLine
+
+_HEAD = "(linedrawd: {strokes} strokes)"
+_STROKE = "(stroke {index})"
+_NO_STROKE = "(no stroke)"
+_COMMENT = re.compile(r"\([^)]*\)|;.*")
+
+
+def save_program(path: Path, program: Program) -> None:
+    """One line a program line, before each change of stroke a comment that says which. Raises DiskTrouble."""
+    try:
+        path.write_text(program_text(program), encoding="ascii")
+    except OSError as error:
+        raise DiskTrouble(f"cannot write {path}: {error.strerror}: free space or mend the folder's rights") from error
+
+
+def load_program(path: Path) -> Program:
+    """What `save_program` wrote, comments removed: they must never be sent. Raises DiskTrouble, LinedrawError.
+
+    A file that was written by something else has no stroke comments: the head comment is missing and it is refused.
+    """
+    try:
+        text = path.read_text(encoding="ascii")
+    except OSError as error:
+        raise DiskTrouble(f"cannot read {path}: {error.strerror}: mend the folder's rights") from error
+    except UnicodeDecodeError as error:
+        raise LinedrawError(f"{path}, byte {error.start}: not a program of ours: plan the picture again") from error
+    return parse_program(text, name=str(path))
+
+
+def program_text(program: Program) -> str:
+    """The file's text. Stroke numbers count from 0, as everywhere."""
+    rows = [_HEAD.format(strokes=program.strokes)]
+    before: int | None = None
+    for line in program.lines:
+        if line.stroke != before:
+            rows.append(_NO_STROKE if line.stroke is None else _STROKE.format(index=line.stroke))
+            before = line.stroke
+        rows.append(line.text)
+    return "\n".join(rows) + "\n"
+
+
+def parse_program(text: str, *, name: str = "program") -> Program:
+    """The program of a file's text. Raises LinedrawError when the head comment is missing."""
+    rows = text.splitlines()
+    head = re.fullmatch(re.escape(_HEAD).replace(r"\{strokes\}", r"(\d+)"), rows[0] if rows else "")
+    if head is None:
+        raise LinedrawError(f"{name}, line 1: expected '{_HEAD.format(strokes='N')}': plan the picture again")
+    lines: list[ProgramLine] = []
+    stroke: int | None = None
+    for row in rows[1:]:
+        if (comment := re.fullmatch(r"\(stroke (\d+)\)", row)) is not None:
+            stroke = int(comment[1])
+        elif row == _NO_STROKE:
+            stroke = None
+        elif command := _COMMENT.sub("", row).strip():
+            lines.append(ProgramLine(command, stroke))
+    return Program(tuple(lines), int(head[1]))

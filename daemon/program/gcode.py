@@ -1,0 +1,99 @@
+"""A toolpath as G-code for GRBL."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
+
+from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
+
+
+@dataclass(frozen=True, slots=True)
+class ZPen:
+    """The pen hangs on the Z axis; up is +Z. It is lowered no faster than plunge_mm_s."""
+
+    up_mm: float = 5.0
+    down_mm: float = 0.0
+    plunge_mm_s: float = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class ServoPen:
+    """The pen hangs on a servo at the spindle output; up_s and down_s are S words, numbers for the controller.
+
+    dwell_s: time that the servo is given to get there.
+    """
+
+    up_s: float
+    down_s: float
+    dwell_s: float = 0.3
+
+
+Pen: TypeAlias = ZPen | ServoPen
+
+_HEAD = "G21 G90"
+
+
+def write_gcode(toolpath: Toolpath, *, pen: Pen, draw_mm_s: float) -> Program:
+    """Disengage; for each stroke travel, engage, draw, disengage; park.
+
+    Positions in mm with 3 decimals. Every line states both of its coordinates, so that none depends on what another
+    line left; G1 and F stand once a stroke. A stroke of one point is a dot: the pen goes down and up. No M2 at the
+    end: GRBL would switch the spindle output, and with it a servo, off. Dialect: GRBL 1.1, also taken by grblHAL.
+    Raises ValueError when draw_mm_s or the pen's plunge_mm_s is not positive.
+    """
+    if draw_mm_s <= 0 or (isinstance(pen, ZPen) and pen.plunge_mm_s <= 0):
+        raise ValueError(f"a pen cannot be moved at draw_mm_s = {draw_mm_s} with {pen}: give speeds above 0")
+    lines = [ProgramLine(_HEAD), *map(ProgramLine, _disengage(pen))]
+    for index, stroke in enumerate(toolpath.strokes):
+        lines += [ProgramLine(text, index) for text in _stroke(stroke, pen, draw_mm_s)]
+    lines.append(ProgramLine(f"G0 {_position(*toolpath.park_mm)}"))
+    return Program(tuple(lines), len(toolpath.strokes))
+
+
+def lift_lines(pen: Pen) -> tuple[str, ...]:
+    """Lines that raise the pen whatever the controller was told before."""
+    return (_HEAD, *_disengage(pen))
+
+
+def _stroke(stroke: Stroke, pen: Pen, draw_mm_s: float) -> Iterator[str]:
+    """Each line of one stroke, from the travel to it to the lifted pen."""
+    positions = [_position(x_mm, y_mm) for x_mm, y_mm in stroke.points.tolist()]
+    yield f"G0 {positions[0]}"
+    yield from _engage(pen)
+    moves = [new for old, new in pairwise(positions) if new != old]
+    if moves:
+        yield f"G1 {moves[0]} F{_number(60 * draw_mm_s)}"
+        yield from moves[1:]
+    yield from _disengage(pen)
+
+
+def _engage(pen: Pen) -> tuple[str, ...]:
+    match pen:
+        case ZPen(down_mm=down_mm, plunge_mm_s=plunge_mm_s):
+            return (f"G1 Z{_coordinate(down_mm)} F{_number(60 * plunge_mm_s)}",)
+        case ServoPen(down_s=down_s, dwell_s=dwell_s):
+            return (f"M3 S{_number(down_s)}", f"G4 P{_number(dwell_s)}")
+
+
+def _disengage(pen: Pen) -> tuple[str, ...]:
+    match pen:
+        case ZPen(up_mm=up_mm):
+            return (f"G0 Z{_coordinate(up_mm)}",)
+        case ServoPen(up_s=up_s, dwell_s=dwell_s):
+            return (f"M3 S{_number(up_s)}", f"G4 P{_number(dwell_s)}")
+
+
+def _position(x_mm: float, y_mm: float) -> str:
+    return f"X{_coordinate(x_mm)} Y{_coordinate(y_mm)}"
+
+
+def _coordinate(value_mm: float) -> str:
+    return f"{round(value_mm, 3) + 0.0:.3f}"  # + 0.0: no "-0.000"
+
+
+def _number(value: float) -> str:
+    """Three decimals at most, no exponent: GRBL refuses one."""
+    return f"{value:.3f}".rstrip("0").rstrip(".")

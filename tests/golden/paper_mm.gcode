@@ -1,0 +1,23 @@
+(linedrawd: 3 strokes)
+F1200.00
+G00 Z-5
+(stroke 0)
+X30.00 Y40.00
+G01 Z0
+X30.00 Y50.50
+X41.25 Y50.50
+G00 Z-5
+(stroke 1)
+X50.00 Y30.00
+G01 Z0
+X60.00 Y30.00
+X60.00 Y40.00
+X50.00 Y40.00
+X50.00 Y30.00
+G00 Z-5
+(stroke 2)
+X12.35 Y0.00
+G01 Z0
+G00 Z-5
+(no stroke)
+M30
