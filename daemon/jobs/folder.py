@@ -1,0 +1,185 @@
+"""A job's folder: made once, filled by moves and writes that are whole or not there, also after a power cut."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import shutil
+import unicodedata
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from daemon.errors import DiskTrouble
+
+CLAIMED = ".claimed-"
+"""A picture of an inbox on another file system, while it is being copied: `.claimed-JOB`."""
+_PART = ".part"
+
+
+def write_durably(path: Path, data: bytes) -> None:
+    """Replace the file by `data`, whole or not at all. Raises DiskTrouble."""
+    with _disk_trouble(path):
+        _write_beside(path, data)
+        sync_folder(path.parent)
+
+
+def _write_beside(path: Path, data: bytes) -> None:
+    part = path.with_name(path.name + _PART)
+    try:
+        with part.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        part.rename(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def sync_folder(folder: Path) -> None:
+    """What was renamed in this folder stays renamed after a power cut."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def make_folder(folder: Path) -> Path:
+    """The folder, made with its parents where it is missing. Raises DiskTrouble."""
+    with _disk_trouble(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def source_of(folder: Path) -> Path | None:
+    """The picture of a job, None where it has not arrived."""
+    return next((path for path in folder.glob("source*") if path.suffix != _PART), None)
+
+
+class JobFolders:
+    """The folders of all jobs: `<number>-<name>`, numbered in the order in which the pictures came."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = make_folder(root)
+        self._number = max((_number(name) for name in os.listdir(root)), default=0)
+
+    def path(self, job_id: str) -> Path:
+        return self.root / job_id
+
+    def take(self, picture: Path) -> str:
+        """Move the picture into a new job's folder and return the job's id.
+
+        The move is one rename; where the inbox lies on another file system the picture is first hidden there, then
+        copied. Raises DiskTrouble, the picture is then still where it was, or FileNotFoundError when it has gone.
+        """
+        with self._new_folder(picture) as folder:
+            try:
+                picture.rename(folder / _source_name(picture))
+            except OSError as error:
+                if error.errno != errno.EXDEV:
+                    raise
+                _take_from_elsewhere(picture, folder)
+            sync_folder(picture.parent)
+        return folder.name
+
+    def copy(self, picture: Path) -> str:
+        """As `take`, but the picture stays where it is. Raises DiskTrouble and FileNotFoundError."""
+        with self._new_folder(picture) as folder:
+            _copy_durably(picture, folder / _source_name(picture))
+        return folder.name
+
+    def finish_claims(self, inbox: Path) -> None:
+        """Copy again what a power cut left hidden in an inbox on another file system."""
+        for hidden in inbox.glob(f"{CLAIMED}*"):
+            folder = self.path(hidden.name.removeprefix(CLAIMED))
+            if folder.is_dir() and source_of(folder) is None:
+                with _disk_trouble(folder):
+                    _copy_durably(hidden, folder / _source_name(Path(folder.name)))
+            if source_of(folder) is not None:
+                hidden.unlink()
+
+    def strays(self, known: set[str]) -> list[str]:
+        """Folders that hold a picture but whose job was never recorded; those without a picture are removed."""
+        strays = [folder for folder in sorted(self.root.iterdir()) if folder.is_dir() and folder.name not in known]
+        for folder in strays:
+            if source_of(folder) is None:
+                shutil.rmtree(folder, ignore_errors=True)
+        return [folder.name for folder in strays if source_of(folder) is not None]
+
+    @contextmanager
+    def _new_folder(self, picture: Path) -> Iterator[Path]:
+        with _disk_trouble(self.root):
+            folder = self._make(picture.stem)
+            try:
+                yield folder
+                sync_folder(folder)
+                sync_folder(self.root)
+            except OSError:
+                if source_of(folder) is None:
+                    shutil.rmtree(folder, ignore_errors=True)
+                raise
+
+    def _make(self, stem: str) -> Path:
+        while True:
+            self._number += 1
+            folder = self.root / f"{self._number:06d}-{_slug(stem)}"
+            try:
+                folder.mkdir()
+            except FileExistsError:
+                continue
+            return folder
+
+
+def _take_from_elsewhere(picture: Path, folder: Path) -> None:
+    hidden = picture.with_name(CLAIMED + folder.name)
+    name = folder / _source_name(picture)
+    picture.rename(hidden)
+    try:
+        _copy_durably(hidden, name)
+    except OSError:
+        hidden.rename(picture)
+        raise
+    hidden.unlink()
+
+
+def _copy_durably(picture: Path, copy: Path) -> None:
+    part = copy.with_name(copy.name + _PART)
+    try:
+        with picture.open("rb") as given, part.open("wb") as file:
+            shutil.copyfileobj(given, file, 1 << 20)
+            file.flush()
+            os.fsync(file.fileno())
+        part.rename(copy)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def _source_name(picture: Path) -> str:
+    suffix = picture.suffix.lower()
+    return "source" + (suffix if re.fullmatch(r"\.[a-z0-9]{1,8}", suffix) and suffix != _PART else "")
+
+
+def _slug(stem: str) -> str:
+    plain = unicodedata.normalize("NFKD", stem).encode("ascii", "ignore").decode("ascii").lower()
+    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:24].strip("-") or "picture"
+
+
+def _number(name: str) -> int:
+    found = re.match(r"(\d+)-", name)
+    return int(found.group(1)) if found else 0
+
+
+@contextmanager
+def _disk_trouble(place: Path) -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise DiskTrouble(
+            f"{place} cannot be written ({error.strerror}): free the disk or correct its rights"
+        ) from None

@@ -1,0 +1,33 @@
+"""The table of states is whole, and what it lacks is a mistake."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from daemon.jobs.states import ALLOWED, State, check_step
+
+
+def test_every_state_stands_in_the_table() -> None:
+    assert set(ALLOWED) == set(State)
+
+
+def test_every_state_can_be_reached_from_the_queue() -> None:
+    reached = {State.QUEUED}
+    while new := {after for before in reached for after in ALLOWED[before]} - reached:
+        reached |= new
+    assert reached == set(State)
+
+
+def test_a_job_goes_through_its_states_in_order() -> None:
+    way = [State.QUEUED, State.PLANNING, State.PLANNED, State.WAITING, State.DRAWING, State.DONE]
+    for before, after in pairwise(way):
+        check_step(before, after)
+
+
+@pytest.mark.parametrize("end", [State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED])
+def test_a_job_that_has_ended_is_never_drawn_again(end: State) -> None:
+    assert State.DRAWING not in ALLOWED[end]
+    with pytest.raises(ValueError, match=f"from {end.value} to drawing"):
+        check_step(end, State.DRAWING)
