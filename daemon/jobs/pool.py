@@ -1,0 +1,180 @@
+"""The daemon's side of the worker process: started when first needed, kept warm, killed when it takes too long."""
+
+from __future__ import annotations
+
+import json
+import os
+import selectors
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import daemon
+from daemon import errors
+from daemon.config import Settings
+from daemon.errors import PlanningFailed
+
+_ROOT = Path(daemon.__file__).parent.parent
+_LAST_WORDS_BYTES = 4096
+
+
+class Pool:
+    """Has pictures planned and ink measured, one request at a time, each within the limits of `settings.planning`.
+
+    Every call raises the LinedrawError that the planner raised, or PlanningFailed when the worker died, ran out of
+    memory or out of time; the next call starts a new worker. `interrupt` and `close` may be called from any thread.
+    """
+
+    def __init__(self, settings: Settings, *, planner: str = "daemon.jobs.planner") -> None:
+        self._settings, self._planner = settings, planner
+        self._lock = threading.Lock()
+        self._worker: _Worker | None = None
+        self._closed = False
+
+    def plan(self, source: Path, folder: Path, machine: str, *, progress: Callable[[str], None]) -> None:
+        """Fill the job's folder with its plan. `progress` is told the name of each stage as it begins."""
+        self._ask({"ask": "plan", "source": str(source), "folder": str(folder), "machine": machine}, progress)
+
+    def measure(self, folder: Path, machine: str) -> None:
+        """Compare the ink in `ink.json` with the picture."""
+        self._ask({"ask": "measure", "folder": str(folder), "machine": machine}, lambda _: None)
+
+    def interrupt(self) -> None:
+        """Break off what the worker is doing; its caller gets PlanningFailed."""
+        worker = self._worker
+        if worker:
+            worker.kill()
+
+    def close(self) -> None:
+        self._closed = True
+        self.interrupt()
+        with self._lock:
+            self._drop()
+
+    def _ask(self, request: dict[str, Any], progress: Callable[[str], None]) -> None:
+        request["settings"] = self._settings.model_dump(mode="json")
+        with self._lock:
+            try:
+                answer = self._started().ask(request, self._settings.planning.time_limit_s, progress)
+            except PlanningFailed:
+                self._drop()
+                raise
+            if answer.get("words") == "out of memory":
+                self._drop()
+                limit_mb = self._settings.planning.memory_mb
+                raise PlanningFailed(
+                    f"planning needs more than {limit_mb} MB: scale the picture down or raise memory_mb"
+                )
+        if "failed" in answer:
+            raise getattr(errors, answer["failed"])(answer["words"])
+
+    def _started(self) -> _Worker:
+        if self._closed:
+            raise PlanningFailed("the daemon is ending: start it again")
+        if self._worker is None or not self._worker.alive:
+            self._drop()
+            self._worker = _Worker(self._planner, self._settings)
+        return self._worker
+
+    def _drop(self) -> None:
+        worker, self._worker = self._worker, None
+        if worker:
+            worker.end()
+
+
+class _Worker:
+    """One process. Every way in which it can end is said as PlanningFailed, with its last words."""
+
+    def __init__(self, planner: str, settings: Settings) -> None:
+        limits = settings.planning
+        command = [
+            sys.executable,
+            "-m",
+            "daemon.jobs.worker",
+            "--planner",
+            planner,
+            "--memory-mb",
+            str(limits.memory_mb),
+        ]
+        threads = str(limits.threads)
+        environment = {"ORT_DISABLE_TELEMETRY": "1", "OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads}
+        self._process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            bufsize=0,
+            cwd=_ROOT,
+            env=os.environ | environment,
+        )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        self._in, self._out, self._err = self._process.stdin, self._process.stdout, self._process.stderr
+        self._heard = b""
+        self._last_words = b""
+
+    @property
+    def alive(self) -> bool:
+        return self._process.poll() is None
+
+    def ask(self, request: dict[str, Any], limit_s: float, progress: Callable[[str], None]) -> dict[str, Any]:
+        until = time.monotonic() + limit_s
+        try:
+            self._in.write(json.dumps(request).encode() + b"\n")
+        except BrokenPipeError:
+            raise self._died() from None
+        while True:
+            answer: dict[str, Any] = json.loads(self._line(until, limit_s))
+            if "progress" not in answer:
+                return answer
+            progress(answer["progress"])
+
+    def _line(self, until: float, limit_s: float) -> bytes:
+        with selectors.DefaultSelector() as ears:
+            ears.register(self._out, selectors.EVENT_READ)
+            ears.register(self._err, selectors.EVENT_READ)
+            while b"\n" not in self._heard:
+                ready = ears.select(max(0.0, until - time.monotonic()))
+                if not ready:
+                    raise PlanningFailed(
+                        f"planning took more than {limit_s:g} s: simplify the picture or raise time_limit_s"
+                    )
+                for key, _ in ready:
+                    self._hear(ears, key)
+        line, _, self._heard = self._heard.partition(b"\n")
+        return line
+
+    def _hear(self, ears: selectors.BaseSelector, key: selectors.SelectorKey) -> None:
+        data = os.read(key.fd, 65536)
+        if key.fileobj is self._err:
+            self._last_words = (self._last_words + data)[-_LAST_WORDS_BYTES:]
+            if not data:
+                ears.unregister(self._err)
+        elif data:
+            self._heard += data
+        else:
+            raise self._died()
+
+    def _died(self) -> PlanningFailed:
+        code = self._process.wait()
+        self._last_words += self._err.read() or b""
+        said = self._last_words.decode("utf-8", "backslashreplace").strip().rpartition("\n")[2]
+        how = f"was killed by {signal.Signals(-code).name}" if code < 0 else f"ended with {code}"
+        return PlanningFailed(
+            f"the planning process {how}{' after saying ' + said if said else ''}: try another picture"
+        )
+
+    def kill(self) -> None:
+        self._process.kill()
+
+    def end(self) -> None:
+        self._process.kill()
+        self._process.wait()
+        for pipe in (self._in, self._out, self._err):
+            pipe.close()

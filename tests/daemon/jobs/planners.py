@@ -1,0 +1,72 @@
+"""A second planner for the worker: what it does stands in the picture, and every way of going wrong is real."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+from daemon.config import Settings
+from daemon.errors import BadPicture
+
+PROGRAM = "G21\nG90\nG0 Z5\nG0 X1 Y1\nG1 Z0 F600\nG1 X9 Y1 F1200\nG0 Z5\nG0 X1 Y5\nG1 Z0 F600\nG1 X9 Y5 F1200\nG0 Z5\n"
+
+
+def plan_picture(
+    source: Path, folder: Path, settings: Settings, machine: str, *, progress: Callable[[str], None]
+) -> None:
+    progress("decode")
+    text = source.read_text()
+    if text in WAYS:
+        WAYS[text]()
+    progress("write")
+    print("libraries print to stdout")
+    strokes = [[[1, 1], [9, 1]], [[1, 5], [9, 5]]]
+    (folder / "strokes.json").write_text(json.dumps({"strokes": strokes, "machine": machine, "nice": os.nice(0)}))
+    (folder / "program.gcode").write_text(PROGRAM)
+    (folder / "environment.json").write_text(json.dumps(dict(os.environ)))
+
+
+def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
+    ink = json.loads((folder / "ink.json").read_text())
+    (folder / "report.json").write_text(json.dumps({"ink_strokes": len(ink["strokes"])}))
+
+
+def _bad() -> None:
+    raise BadPicture("source.png is no picture: drop another")
+
+
+def _crash() -> None:
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def _hang() -> None:
+    while True:
+        signal.pause()
+
+
+def _eat() -> None:
+    eaten = []
+    while True:
+        eaten.append(bytearray(16 << 20))
+
+
+def _fill() -> None:
+    with open("/dev/full", "w", buffering=1) as full:
+        full.write("no room\n")
+
+
+def _mistake() -> None:
+    raise KeyError("a mistake in the planner")
+
+
+WAYS: dict[str, Callable[[], None]] = {
+    "bad": _bad,
+    "crash": _crash,
+    "hang": _hang,
+    "eat": _eat,
+    "fill": _fill,
+    "mistake": _mistake,
+}
