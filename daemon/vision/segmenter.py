@@ -1,0 +1,111 @@
+"""The network on a page. The only door to onnxruntime.
+
+Input of the network: float32 (N, 1, H, W), ink 1 and paper 0; output: logits (N, 3, H, W) in the order background,
+lines, corners (Raghav et al. 2020, Sec. 3.1; see the manifest beside the model).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.errors import SettingsError
+from daemon.shapes import Grey, Map, PageImage, Segmentation
+from daemon.vision.tiles import Tile, tiles
+
+# onnxruntime's Linux wheels write an identifier to disk and mean to report home as soon as they are imported.
+os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+import onnxruntime  # noqa: E402
+
+MODELS = Path(__file__).parent.parent / "models"
+MARGIN_PX = 16
+BATCH = 4
+_BLANK = 64
+"""A tile without a pixel this dark is blank paper (of 255)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What the file beside the model says of it."""
+
+    file: str
+    sha256: str
+    tile_px: int
+
+
+def load_manifest(name: str = "linedrawd") -> Manifest:
+    """Raises SettingsError when there is no such model."""
+    path = MODELS / f"{name}.json"
+    if not path.is_file():
+        known = ", ".join(sorted(p.stem for p in MODELS.glob("*.json")))
+        raise SettingsError(f"there is no network called {name!r} in {MODELS}: choose one of {known}")
+    values = json.loads(path.read_text())
+    return Manifest(values["file"], values["sha256"], values["tile_px"])
+
+
+class Segmenter:
+    """A loaded network; one page at a time."""
+
+    def __init__(self, name: str = "linedrawd", *, threads: int = 1) -> None:
+        self._tile_px = load_manifest(name).tile_px
+        self._session = open_model(MODELS / load_manifest(name).file, threads=threads)
+
+    def segment(self, page: PageImage) -> Segmentation:
+        """Three maps of the page's shape, float32 in 0..1, that sum to 1 everywhere."""
+        height, width = page.grey.shape
+        maps = np.zeros((3, height, width), np.float32)
+        maps[0] = 1.0
+        inked = [t for t in tiles(width, height, size_px=self._tile_px, margin_px=MARGIN_PX) if has_ink(page.grey, t)]
+        for first in range(0, len(inked), BATCH):
+            batch = inked[first : first + BATCH]
+            answers = softmax(self.logits(np.stack([cut(page.grey, t, self._tile_px) for t in batch])))
+            for tile, answer in zip(batch, answers, strict=True):
+                paste(maps, tile, answer)
+        return Segmentation(*maps)
+
+    def logits(self, ink: NDArray[np.float32]) -> NDArray[np.float32]:
+        """ink float32 (N, H, W) in 0..1, H and W legal sizes -> float32 (N, 3, H, W)."""
+        answer: NDArray[np.float32] = self._session.run(None, {"ink": ink[:, None]})[0]
+        return answer
+
+
+def open_model(path: Path, *, threads: int) -> onnxruntime.InferenceSession:
+    """The number of threads is always said: left alone, onnxruntime pins its workers, which a service may not."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+
+
+def has_ink(grey: Grey, tile: Tile) -> bool:
+    core = grey[tile.core_top : tile.core_bottom, tile.core_left : tile.core_right]
+    return int(core.min()) < 255 - _BLANK
+
+
+def cut(grey: Grey, tile: Tile, size_px: int) -> Map:
+    """The window as the network wants it, white paper beyond the page."""
+    height, width = grey.shape
+    out = np.zeros((size_px, size_px), np.float32)
+    top, left = max(tile.top, 0), max(tile.left, 0)
+    bottom, right = min(tile.top + size_px, height), min(tile.left + size_px, width)
+    seen = grey[top:bottom, left:right]
+    out[top - tile.top : bottom - tile.top, left - tile.left : right - tile.left] = (255 - seen) / np.float32(255)
+    return out
+
+
+def paste(maps: NDArray[np.float32], tile: Tile, answer: NDArray[np.float32]) -> None:
+    rows = slice(tile.core_top - tile.top, tile.core_bottom - tile.top)
+    columns = slice(tile.core_left - tile.left, tile.core_right - tile.left)
+    maps[:, tile.core_top : tile.core_bottom, tile.core_left : tile.core_right] = answer[:, rows, columns]
+
+
+def softmax(logits: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Over axis 1."""
+    powers = np.exp(logits - logits.max(axis=1, keepdims=True))
+    return powers / powers.sum(axis=1, keepdims=True)

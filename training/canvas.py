@@ -1,0 +1,98 @@
+"""Training canvases, rendered on the fly: one number in, always the same canvas out.
+
+Two families. *Paper*: the reference rendering, half of the canvases with two or three sketches on them. *Curved*: raw pen
+paths, smooth, 1 to 4 px wide, some zoomed beyond the canvas (a tile of a large page), some blurred, faint or grainy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from training.curves import curves, smooth
+from training.quickdraw import Sketches
+from training.render import BORDER_PX, CANVAS_PX, Points, Sample, fit, polylines
+
+Random = np.random.Generator
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Batch:
+    """ink: float32 (N, 1, S, S) in 0..1. label: int64 (N, S, S)."""
+
+    ink: NDArray[np.float32]
+    label: NDArray[np.int64]
+
+
+class Canvases:
+    """Canvas `index` of the run `seed`: the same whenever, and in whatever order, it is asked for."""
+
+    def __init__(self, simplified: Sketches, raw: Sketches | None, *, seed: int) -> None:
+        self._seed = seed
+        self._sources = [simplified, raw or simplified]
+        self._cumulated = [np.cumsum(source.sampling_weights()) for source in self._sources]
+
+    def sample(self, index: int, *, curved: float, canvas_px: int = CANVAS_PX) -> Sample:
+        """`curved` is the share of canvases of the second family."""
+        random = np.random.default_rng((self._seed, index))
+        family = self._curved if random.random() < curved else self._paper
+        return family(random, canvas_px)
+
+    def batch(self, first: int, count: int, *, curved: float, canvas_px: int = CANVAS_PX) -> Batch:
+        return stack([self.sample(first + k, curved=curved, canvas_px=canvas_px) for k in range(count)])
+
+    def _paper(self, random: Random, canvas_px: int) -> Sample:
+        strokes = fit([t for s in self._sketches(0, random) for t in s], canvas_px, canvas_px - 2 * BORDER_PX)
+        return polylines(strokes, canvas_px)
+
+    def _curved(self, random: Random, canvas_px: int) -> Sample:
+        sigma = random.uniform(0.8, 2.0)
+        strokes = [smooth(t, sigma) for s in self._sketches(1, random) for t in s if len(t) > 1]
+        if not strokes:
+            return self._paper(random, canvas_px)
+        zoom = random.uniform(1.2, 2.5) if random.random() < 0.35 else random.uniform(0.5, 1.0)
+        sketch_px = zoom * (canvas_px - 2 * BORDER_PX)
+        slack_px = abs(canvas_px - sketch_px) / 2 * (1.0 if zoom > 1 else 0.8)
+        shift = random.uniform(-slack_px, slack_px, 2)
+        placed = [t + shift for t in fit(strokes, canvas_px, sketch_px)]
+        sample = curves(placed, canvas_px, int(random.choice([1, 2, 3, 4], p=[0.15, 0.4, 0.35, 0.1])))
+        return Sample(appearance(sample.ink, random), sample.label)
+
+    def _sketches(self, source: int, random: Random) -> list[list[Points]]:
+        """One, two or three sketches turned, mirrored and stretched, each in a unit box moved and scaled at random."""
+        count = int(random.choice([1, 2, 3], p=[0.5, 0.3, 0.2]))
+        picks = np.searchsorted(self._cumulated[source], random.random(count))
+        return [self._turned(self._sources[source][min(k, len(self._sources[source]) - 1)], random) for k in picks]
+
+    @staticmethod
+    def _turned(strokes: Sequence[NDArray[np.float32]], random: Random) -> list[Points]:
+        angle, stretch = random.uniform(0, 2 * np.pi), np.exp(random.uniform(-0.3, 0.3, 2))
+        cos, sin = np.cos(angle), np.sin(angle)
+        matrix = np.array([[cos, -sin], [sin, cos]]) * stretch * random.choice([-1, 1], 2)
+        turned = fit([(stroke @ matrix) for stroke in strokes], 1, random.uniform(0.6, 1.0))
+        shift = random.uniform(-0.25, 0.25, 2)
+        return [t + shift for t in turned]
+
+
+def appearance(ink: NDArray[np.uint8], random: Random) -> NDArray[np.uint8]:
+    """Half of the pages stay as they are; the others are blurred, paler or grainy as a scan is."""
+    if random.random() < 0.5:
+        return ink
+    page = ink.astype(np.float32)
+    if random.random() < 0.7:
+        page = cv2.GaussianBlur(page, (0, 0), random.uniform(0.3, 0.8))
+    page *= random.uniform(0.6, 1.0)
+    if random.random() < 0.5:
+        page += random.normal(0.0, random.uniform(1.0, 8.0), page.shape).astype(np.float32)
+    return np.clip(page, 0, 255).astype(np.uint8)
+
+
+def stack(samples: Sequence[Sample]) -> Batch:
+    return Batch(
+        np.stack([s.ink for s in samples])[:, None].astype(np.float32) / 255.0,
+        np.stack([s.label for s in samples]).astype(np.int64),
+    )

@@ -1,0 +1,291 @@
+"""Train a network: `python -m training.train --data DIR --net 7,3,4,3 --loss mwx --out runs/NAME [--resume]`.
+
+The budget is seconds or images. The learning rate warms up, stays, and falls to nothing over the last part (so that a run
+can go on from before the fall); the weights that are kept are an exponential moving average. A checkpoint is written every
+few minutes and on SIGTERM or Ctrl-C; --resume goes on in the same order of canvases with the same state of the optimiser.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+from tqdm import tqdm
+
+from training import quickdraw
+from training.canvas import Batch, Canvases, stack
+from training.loss import LOSSES, omega
+from training.measure import Confusion
+from training.muon import Muon
+from training.network import MirrorUNet, Shape
+from training.render import Sample, reference
+
+HELD_OUT = 1000
+"""The first rows of the training files are the validation set; they are never trained on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """Everything a run depends on; stored beside its checkpoint."""
+
+    data: str
+    raw: str | None = None
+    shape: Shape = Shape()
+    loss: str = "mwx"
+    omega_exponent: float = 0.5
+    plain_share: float = 0.15
+    optimiser: str = "adamw"
+    learning_rate: float = 4e-3
+    weight_decay: float = 1e-4
+    warm_up: float = 0.05
+    fall: float = 0.4
+    batch: int = 4
+    curved: float = 0.45
+    wide_every: int = 6
+    wide_px: int = 285
+    ema: float = 0.998
+    clip: float = 5.0
+    seed: int = 0
+    seconds: float | None = None
+    images: int | None = None
+    bf16: bool = True
+    threads: int = 0
+    start: str | None = None
+
+
+@dataclass(slots=True)
+class Progress:
+    """What a checkpoint holds besides weights: how far the run is and what it has measured."""
+
+    images: int = 0
+    batches: int = 0
+    seconds: float = 0.0
+    history: list[dict[str, float]] | None = None
+
+    def share(self, config: Config) -> float:
+        """0 at the start, 1 at the end of the budget."""
+        if config.images is not None:
+            return min(1.0, self.images / config.images)
+        return min(1.0, self.seconds / (config.seconds or 1.0))
+
+
+def learning_rate(config: Config, share: float) -> float:
+    """Trapezoid: up, level, then down by a cosine-free straight line."""
+    up = min(1.0, (share + 1e-4) / config.warm_up) if config.warm_up else 1.0
+    down = min(1.0, (1.0 - share) / config.fall) if config.fall else 1.0
+    return config.learning_rate * min(up, down)
+
+
+class Average:
+    """Exponential moving average of weights and buffers, warmed up so that the start is forgotten."""
+
+    def __init__(self, net: nn.Module, decay: float) -> None:
+        self._decay, self._steps = decay, 0
+        self.state = {name: value.detach().clone().float() for name, value in net.state_dict().items()}
+
+    def update(self, net: nn.Module) -> None:
+        self._steps += 1
+        keep = min(self._decay, self._steps / (self._steps + 10))
+        for name, value in net.state_dict().items():
+            if value.is_floating_point():
+                self.state[name].lerp_(value.detach(), 1.0 - keep)
+            else:
+                self.state[name].copy_(value)
+
+
+class Run:
+    """One training run: network, optimiser, average, and where it stands."""
+
+    def __init__(self, config: Config, folder: Path) -> None:
+        self.config, self.folder = config, folder
+        self.device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        torch.manual_seed(config.seed)
+        self.net = MirrorUNet(config.shape).to(self.device, memory_format=torch.channels_last)
+        if config.start:
+            self.net.load_state_dict(_floats(torch.load(config.start, map_location=self.device)["average"]))
+        self.average = Average(self.net, config.ema)
+        self.optimiser = _optimiser(self.net, config)
+        self.weights = omega(config.omega_exponent).to(self.device)
+        self.progress = Progress(history=[])
+
+    def step(self, batch: Batch) -> float:
+        share = self.progress.share(self.config)
+        rate = learning_rate(self.config, share)
+        for group in self.optimiser.param_groups:
+            group["lr"] = rate
+        loss_of = LOSSES["plain" if share > 1.0 - self.config.plain_share else self.config.loss]
+        x = torch.from_numpy(batch.ink).to(self.device, memory_format=torch.channels_last)
+        y = torch.from_numpy(batch.label).to(self.device)
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.bf16):
+            logits = self.net(x)
+        loss: Tensor = loss_of(logits.float(), y, self.weights)
+        self.optimiser.zero_grad(set_to_none=True)
+        loss.backward()  # type: ignore[no-untyped-call]
+        nn.utils.clip_grad_norm_(self.net.parameters(), self.config.clip)
+        self.optimiser.step()
+        self.average.update(self.net)
+        self.progress.images += len(batch.ink)
+        return float(loss.detach())
+
+    def validate(self, sets: dict[str, list[Sample]]) -> dict[str, float]:
+        """Pooled mean IoU of the averaged weights on each set, in percent."""
+        net = MirrorUNet(self.config.shape).to(self.device, memory_format=torch.channels_last)
+        net.load_state_dict(self.average.state)
+        net.eval()
+        figures = {"images": float(self.progress.images), "seconds": self.progress.seconds}
+        for name, samples in sets.items():
+            confusion = Confusion()
+            for first in range(0, len(samples), 8):
+                batch = stack(samples[first : first + 8])
+                x = torch.from_numpy(batch.ink).to(self.device, memory_format=torch.channels_last)
+                with torch.inference_mode(), torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.bf16):
+                    confusion.add(net(x).argmax(dim=1).cpu().numpy(), batch.label)
+            figures |= {f"{name}_{label}": value for label, value in confusion.percent().items()}
+        assert self.progress.history is not None
+        self.progress.history.append(figures)
+        return figures
+
+    def save(self) -> None:
+        """Checkpoint, written whole or not at all."""
+        state = {
+            "net": self.net.state_dict(),
+            "average": self.average.state,
+            "average_steps": self.average._steps,
+            "optimiser": self.optimiser.state_dict(),
+            "progress": asdict(self.progress),
+            "config": asdict(self.config),
+        }
+        self.folder.mkdir(parents=True, exist_ok=True)
+        torch.save(state, self.folder / "checkpoint.pt.part")
+        (self.folder / "checkpoint.pt.part").replace(self.folder / "checkpoint.pt")
+        (self.folder / "config.json").write_text(json.dumps(asdict(self.config), indent=1) + "\n")
+        (self.folder / "history.json").write_text(json.dumps(self.progress.history, indent=1) + "\n")
+
+    def load(self) -> None:
+        """Go on from the folder's checkpoint."""
+        state = torch.load(self.folder / "checkpoint.pt", map_location=self.device)
+        self.net.load_state_dict(state["net"])
+        self.average.state, self.average._steps = state["average"], state["average_steps"]
+        self.optimiser.load_state_dict(state["optimiser"])
+        self.progress = Progress(**state["progress"])
+
+
+def train(
+    run: Run, canvases: Canvases, sets: dict[str, list[Sample]], *, save_every_s: float, stop: Callable[[], bool]
+) -> None:
+    """Until the budget is spent or `stop()` says so; validates and saves every save_every_s seconds and at the end."""
+    config, saved = run.config, time.monotonic()
+    bar = tqdm(total=config.images, initial=run.progress.images, unit="image", smoothing=0.02, mininterval=1.0)
+    loss, shown = 0.0, {}
+    while run.progress.share(config) < 1.0 and not stop():
+        began = time.monotonic()
+        batch = next_batch(run, canvases)
+        loss += 0.02 * (run.step(batch) - loss)
+        run.progress.seconds += time.monotonic() - began
+        bar.update(len(batch.ink))
+        bar.set_postfix(loss=f"{loss:.4f}", at=f"{run.progress.share(config):.0%}", **shown, refresh=False)
+        if time.monotonic() - saved > save_every_s:
+            shown = _validated(run, sets)
+            saved = time.monotonic()
+    bar.close()
+    _validated(run, sets)
+
+
+def next_batch(run: Run, canvases: Canvases) -> Batch:
+    """Every wide_every-th batch is one of larger canvases, so that the network knows pages of more than one size."""
+    config, first = run.config, run.progress.images
+    run.progress.batches += 1
+    if config.wide_every and run.progress.batches % config.wide_every == 0:
+        return canvases.batch(first, max(1, config.batch // 2), curved=config.curved, canvas_px=config.wide_px)
+    return canvases.batch(first, config.batch, curved=config.curved)
+
+
+def _validated(run: Run, sets: dict[str, list[Sample]]) -> dict[str, str]:
+    figures = run.validate(sets)
+    run.save()
+    shown = {name: f"{figures[f'{name}_mean']:.2f}" for name in sets}
+    tqdm.write(json.dumps({k: round(v, 2) for k, v in figures.items()}))
+    return shown
+
+
+def _optimiser(net: nn.Module, config: Config) -> torch.optim.Optimizer:
+    parameters = list(net.parameters())
+    if config.optimiser == "rmsprop":
+        return torch.optim.RMSprop(parameters, lr=config.learning_rate, alpha=0.9)
+    if config.optimiser == "muon":
+        return Muon(parameters, config.learning_rate, weight_decay=config.weight_decay)
+    return torch.optim.AdamW(parameters, lr=config.learning_rate, weight_decay=config.weight_decay)
+
+
+def _floats(state: dict[str, Tensor]) -> dict[str, Tensor]:
+    return {name: value.float() if value.is_floating_point() else value for name, value in state.items()}
+
+
+def validation_sets(config: Config, count: int = 160) -> dict[str, list[Sample]]:
+    """`paper`: reference renderings of held-out simplified sketches; `curved`: canvases of held-out raw ones."""
+    held = quickdraw.read([Path(config.data)], limit=count)
+    sets = {"paper": [reference(held[k]) for k in range(len(held))]}
+    if config.raw:
+        raw = quickdraw.read([Path(config.raw)], limit=HELD_OUT)
+        canvases = Canvases(raw, raw, seed=12345)
+        sets["curved"] = [canvases.sample(k, curved=1.0) for k in range(count // 2)]
+    return sets
+
+
+def parse(arguments: Sequence[str] | None = None) -> tuple[Config, Path, bool, float]:
+    """Command line to configuration, folder, whether to go on, and the seconds between checkpoints."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", required=True, help="simplified Quick, Draw! ndjson: a file or a folder")
+    parser.add_argument("--raw", help="raw Quick, Draw! ndjson: a file or a folder; without it only the paper's family")
+    parser.add_argument("--net", default="7,3,4,3", help="k1,k2,d,r")
+    parser.add_argument("--channels", default="16,32,64,96,128", help="widths of the d + 1 levels")
+    parser.add_argument("--no-batch-norm", action="store_true", help="as in the paper")
+    parser.add_argument("--out", required=True, type=Path, help="folder of the run")
+    parser.add_argument("--resume", action="store_true", help="go on from the folder's checkpoint")
+    parser.add_argument("--save-every-s", type=float, default=240.0)
+    parser.add_argument("--no-bf16", action="store_true")
+    for field in fields(Config):
+        if field.name not in ("data", "raw", "shape", "bf16"):
+            kind: Any = _kind(field.default)
+            parser.add_argument(f"--{field.name.replace('_', '-')}", type=kind, default=field.default)
+    given = vars(parser.parse_args(arguments))
+    tuples = {key: tuple(int(v) for v in given.pop(key).split(",")) for key in ("net", "channels")}
+    shape = Shape(*tuples["net"], tuples["channels"], not given.pop("no_batch_norm"))
+    folder, resume, save_every_s = given.pop("out"), given.pop("resume"), given.pop("save_every_s")
+    bf16 = not given.pop("no_bf16")
+    return Config(shape=shape, bf16=bf16, **given), folder, resume, save_every_s
+
+
+def _kind(default: Any) -> Callable[[str], Any]:
+    return float if default is None else type(default)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    config, folder, resume, save_every_s = parse(arguments)
+    if config.images is not None:
+        config = replace(config, images=int(config.images))
+    if config.threads:
+        torch.set_num_threads(config.threads)
+    stopped: list[int] = []
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda n, _frame: stopped.append(n))
+    run = Run(config, folder)
+    if resume:
+        run.load()
+    simplified = quickdraw.read([Path(config.data)], skip=HELD_OUT)
+    raw = quickdraw.read([Path(config.raw)], skip=HELD_OUT) if config.raw else None
+    canvases = Canvases(simplified, raw, seed=config.seed)
+    train(run, canvases, validation_sets(config), save_every_s=save_every_s, stop=lambda: bool(stopped))
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
