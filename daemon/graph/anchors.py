@@ -1,0 +1,128 @@
+"""Every junction and end of the skeleton belongs to a vertex; those that the network missed become vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.graph.plausibility import Floats
+from daemon.graph.skeleton import Indices, Skeleton, junctions, rings
+from daemon.shapes import Points
+
+_DISC_PX = 2.3
+"""A vertex owns the centre line in the disc that the network paints for a corner."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Anchored:
+    """Vertices (V, 2) in px and the vertex that owns each pixel of a skeleton (N,), -1 for none.
+
+    The first `corners` vertices are the network's, the others were found on the skeleton.
+    """
+
+    vertices: Points
+    owners: Indices
+    corners: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nearest:
+    """For each pixel of the page the nearest vertex and how far it is; the labels of a page without vertices are 0."""
+
+    vertex: NDArray[np.int32]
+    distance_px: NDArray[np.float32]
+
+
+def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, width_px: float) -> Anchored:
+    """Give every junction, end and ring of a skeleton a vertex: the corner nearby, else one of its own.
+
+    corners: (C, 2) in px, no two on one pixel. shape: of the page. width_px: of the line. Corners that own no pixel of
+    the skeleton are left out. A corner answers for junctions and ends within 1.5 line widths (3 px at least): thinning
+    moves a junction by half a width, and one crossing becomes two.
+    """
+    reach_px = max(3.0, 1.5 * width_px)
+    owner, distance = nearest_at(corners, skeleton.pixels, shape)
+    owners = np.where(distance <= max(_DISC_PX, 0.75 * width_px), owner, -1)
+    clusters = junctions(skeleton) + [np.array([end]) for end in np.flatnonzero(skeleton.degrees <= 1)]
+    strays = [_claim(cluster, owner, distance, owners, reach_px) for cluster in clusters]
+    vertices = _add_strays(skeleton, [s for s in strays if s is not None], corners, owners, width_px)
+    closed = rings(skeleton, owners)
+    owners[closed] = len(vertices) + np.arange(len(closed))
+    vertices = np.concatenate([vertices, skeleton.pixels[closed].astype(np.float64)])
+    return _compact(vertices, owners, len(corners))
+
+
+def nearest(vertices: Points, shape: tuple[int, int]) -> Nearest:
+    """The nearest vertex of every pixel. vertices: (V, 2) in px. shape: (H, W) of the page."""
+    if not len(vertices):
+        return Nearest(np.zeros(shape, np.int32), np.full(shape, np.inf, np.float32))
+    seeds = np.ones(shape, np.uint8)
+    x, y = np.clip(np.rint(vertices).astype(int), 0, [shape[1] - 1, shape[0] - 1]).T
+    seeds[y, x] = 0
+    distance, labels = cv2.distanceTransformWithLabels(
+        seeds, cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    names = np.zeros(int(labels.max()) + 1, np.int32)
+    names[labels[y, x]] = np.arange(len(vertices))
+    return Nearest(names[labels], np.asarray(distance, np.float32))
+
+
+def nearest_at(vertices: Points, pixels: Indices, shape: tuple[int, int]) -> tuple[Indices, Floats]:
+    """The nearest vertex of each pixel (N, 2) and the distance to it in px."""
+    field = nearest(vertices, shape)
+    x, y = pixels.T
+    owner = field.vertex[y, x].astype(np.intp)
+    if not len(vertices):
+        return owner, np.full(len(pixels), np.inf)
+    return owner, np.hypot(*(pixels - vertices[owner]).T)
+
+
+def _claim(cluster: Indices, owner: Indices, distance: Floats, owners: Indices, reach_px: float) -> Indices | None:
+    """Give a junction or an end to the corner that reaches it; return it when none does."""
+    closest = cluster[distance[cluster].argmin()]
+    if distance[closest] > reach_px:
+        return cluster
+    owners[cluster] = owner[closest]
+    return None
+
+
+def _add_strays(skeleton: Skeleton, strays: list[Indices], corners: Points, owners: Indices, width_px: float) -> Points:
+    """Vertices with one more for each stray, strays within a line width of each other taken together."""
+    if not strays:
+        return corners
+    centres = np.array([skeleton.pixels[stray].mean(axis=0) for stray in strays])
+    groups = _grouped(centres, 1.25 * width_px)
+    for stray, group in zip(strays, groups, strict=True):
+        owners[stray] = len(corners) + group
+    counts = np.bincount(groups)
+    sums = np.stack([np.bincount(groups, weights=centres[:, axis]) for axis in (0, 1)], axis=1)
+    return np.concatenate([corners, sums / counts[:, None]])
+
+
+def _grouped(points: Points, apart_px: float) -> Indices:
+    """The number of each point's group; points nearer than `apart_px` to the first of a group belong to it."""
+    cell = max(apart_px, 1.0)
+    cells: dict[tuple[int, int], list[int]] = {}
+    firsts: list[int] = []
+    groups = []
+    for index, (x, y) in enumerate(points.tolist()):
+        column, row = int(x // cell), int(y // cell)
+        near = [g for dx in (-1, 0, 1) for dy in (-1, 0, 1) for g in cells.get((column + dx, row + dy), ())]
+        joined = [g for g in near if np.hypot(*(points[firsts[g]] - (x, y))) < apart_px]
+        if not joined:
+            joined = [len(firsts)]
+            firsts.append(index)
+            cells.setdefault((column, row), []).append(joined[0])
+        groups.append(joined[0])
+    return np.array(groups, np.intp)
+
+
+def _compact(vertices: Points, owners: Indices, corners: int) -> Anchored:
+    """Leave out vertices that own nothing."""
+    kept = np.zeros(len(vertices), bool)
+    kept[owners[owners >= 0]] = True
+    number = np.cumsum(kept) - 1
+    return Anchored(vertices[kept], np.where(owners >= 0, number[owners], -1), int(kept[:corners].sum()))

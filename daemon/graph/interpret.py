@@ -1,0 +1,147 @@
+"""From a page and its segmentation to the graph of its lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import cv2
+import numpy as np
+
+from daemon.graph.anchors import anchored
+from daemon.graph.feedback import Adaptation
+from daemon.graph.plausibility import values_at
+from daemon.graph.ridge import onto_ridge
+from daemon.graph.skeleton import chain_points, chains, thinned
+from daemon.graph.straight import equations_alone, straight_edges
+from daemon.graph.trace import unexplained
+from daemon.graph.vertices import centroids, corner_vertices
+from daemon.ink import Mask, ink_mask, thin
+from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segmentation
+
+_SIMPLIFIED_PX = 0.12
+_LEAST_SPECK_PX = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ink:
+    """The ink of a page: its lines as a mask, its dots (D, 2) in px, all of it in shades, and the line width."""
+
+    lines: Mask
+    dots: Points
+    shades: Map
+    width_px: float
+
+
+def interpret(
+    page: PageImage,
+    segmentation: Segmentation,
+    *,
+    mode: Literal["repaired", "paper"] = "repaired",
+    adaptation: Adaptation | None = None,
+) -> LineGraph:
+    """The vertices and edges of a page.
+
+    `paper` is Sec. 3.3 of Raghav et al. (2020) alone: corners' centroids, straight edges by Eqs. 1 to 3. `repaired`
+    splits melted corners, draws each line once (see `straight_edges`), follows the ink where no straight edge explains
+    it, and moves all of it onto the middle of the ink; what the network missed is found on the thinned ink, so every
+    line of the page is an edge. A dot is an edge of one point from a vertex to itself. Ink of less than 3 px is dirt.
+
+    adaptation: constants of Eq. 3, the paper's own by default. A page without ink gives a graph without edges. Raises
+    ValueError when the maps differ in shape from the page or hold values that are not finite.
+    """
+    _check(page, segmentation)
+    adaptation = adaptation or Adaptation()
+    ink = _ink_of(page)
+    if mode == "paper":
+        return _by_the_paper(segmentation, ink, adaptation)
+    return _with_dots(_lines(segmentation, ink, adaptation), ink.dots)
+
+
+def _check(page: PageImage, segmentation: Segmentation) -> None:
+    for name in ("background", "lines", "corners"):
+        channel: Map = getattr(segmentation, name)
+        if channel.shape != page.grey.shape:
+            raise ValueError(f"the {name} channel is {channel.shape}, the page {page.grey.shape}: segment this page")
+        if not np.isfinite(channel).all():
+            raise ValueError(f"the {name} channel holds values that are not finite: check the network's output")
+
+
+def _ink_of(page: PageImage) -> _Ink:
+    """Ink without specks, dots taken out of it."""
+    mask = ink_mask(page.grey)
+    count, labels, stats, centres = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    areas = stats[:, cv2.CC_STAT_AREA]
+    width_px = page.line_width_px or _width_px(mask)
+    dirt = areas < _LEAST_SPECK_PX
+    dots = ~dirt & (stats[:, 2:4].max(axis=1) <= 1.5 * width_px + 1.0)
+    dots[0] = dirt[0] = False
+    lines = mask & ~(dots | dirt)[labels]
+    return _Ink(lines, np.asarray(centres[dots], np.float64).reshape(-1, 2), _shades(page.grey, mask), width_px)
+
+
+def _width_px(mask: Mask) -> float:
+    """Full width of the line: the ink's area by the length of its centre line."""
+    centre = thin(mask)
+    # A step along a row is 1 px, along a diagonal 1.41: a tenth more than the pixels is right in the mean.
+    return float(max(1.0, mask.sum() / max(1.0, 1.1 * centre.sum())))
+
+
+def _shades(grey: Grey, mask: Mask) -> Map:
+    """How much of each pixel is inked, 0..1."""
+    if not mask.any():
+        return np.zeros(grey.shape, np.float32)
+    paper, full = float(np.median(grey[~mask])) if not mask.all() else 255.0, float(np.percentile(grey[mask], 10))
+    return np.asarray(np.clip((paper - grey.astype(np.float32)) / max(1.0, paper - full), 0.0, 1.0), np.float32)
+
+
+def _by_the_paper(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> LineGraph:
+    vertices = centroids(segmentation.corners)
+    pairs, eta = equations_alone(segmentation, vertices, ink.lines, adaptation, width_px=ink.width_px)
+    edges = [Edge(p, q, vertices[[p, q]], float(score)) for (p, q), score in zip(pairs.tolist(), eta, strict=True)]
+    return LineGraph(vertices, tuple(edges))
+
+
+def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> LineGraph:
+    """The edges of all ink but the dots."""
+    width_px, shape = ink.width_px, (ink.lines.shape[0], ink.lines.shape[1])
+    skeleton = thinned(ink.lines, shortest_spur_px=width_px / 2 + 1.5)
+    corners = corner_vertices(segmentation.corners, ink.lines)
+    nodes = anchored(skeleton, corners, shape, width_px=width_px)
+    found = chains(skeleton, nodes.owners)
+    straight = straight_edges(segmentation, nodes, skeleton, found, ink.lines, adaptation, width_px=width_px)
+    traced = unexplained(found, skeleton, nodes.vertices, straight, shape, width_px=width_px)
+    polylines = [nodes.vertices[pair] for pair in straight]
+    polylines += [chain_points(skeleton, chain, nodes.vertices) for chain in traced]
+    ends = np.array([*straight.tolist(), *((chain.start, chain.end) for chain in traced)], np.intp).reshape(-1, 2)
+    if not polylines:
+        return LineGraph(np.empty((0, 2)), ())
+    polylines, vertices = onto_ridge(polylines, ends, nodes.vertices, ink.shades, width_px=width_px)
+    response = segmentation.lines + segmentation.corners
+    scores = [float(values_at(response, polyline).mean()) for polyline in polylines]
+    edges = zip(ends.tolist(), polylines, scores, strict=True)
+    return _used(vertices, [Edge(p, q, _simplified(polyline), score) for (p, q), polyline, score in edges])
+
+
+def _simplified(polyline: Points) -> Points:
+    """A polyline with fewer points, nowhere further than 0.12 px from the given one (Ramer 1972, Douglas-Peucker 1973)."""
+    kept = cv2.approxPolyDP(polyline.astype(np.float32).reshape(-1, 1, 2), _SIMPLIFIED_PX, False).reshape(-1, 2)
+    result = kept.astype(np.float64)
+    result[0], result[-1] = polyline[0], polyline[-1]
+    return result
+
+
+def _used(vertices: Points, edges: list[Edge]) -> LineGraph:
+    """The graph without vertices that no edge ends in."""
+    kept = np.zeros(len(vertices), bool)
+    for edge in edges:
+        kept[[edge.start, edge.end]] = True
+    number = (np.cumsum(kept) - 1).tolist()
+    renamed = [Edge(number[e.start], number[e.end], e.polyline, e.plausibility) for e in edges]
+    return LineGraph(vertices[kept], tuple(renamed))
+
+
+def _with_dots(graph: LineGraph, dots: Points) -> LineGraph:
+    first = len(graph.vertices)
+    edges = [Edge(first + i, first + i, dot[None], 1.0) for i, dot in enumerate(dots)]
+    return LineGraph(np.concatenate([graph.vertices, dots]), graph.edges + tuple(edges))

@@ -1,0 +1,108 @@
+"""The rules that keep Eqs. 1 to 3 from drawing a line that is not there, or one line twice."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.graph.anchors import Nearest
+from daemon.graph.plausibility import Floats, Samples, mean_along, sampled, values_at
+from daemon.graph.skeleton import Indices
+from daemon.ink import Mask
+from daemon.shapes import Points
+
+TRIM_PX = 2.5
+"""Corners are discs of this radius: so much of an edge at either end lies in the corners channel, not in the lines'."""
+_GAP_PX = 2.0
+_GAP_SHARE = 0.06
+_NEAR_PX = 3.0
+_SHIFT = 4
+
+
+def without_gap(ink: Mask, starts: Points, ends: Points) -> NDArray[np.bool_]:
+    """Which segments have ink under them: at most max(2 px, 6 %) of the length may be bare (rule *gap*).
+
+    ink: bool (H, W). starts, ends: (P, 2) in px. Half a pixel to the side still counts as under it.
+    """
+    samples = sampled(starts, ends)
+    bare = mean_along(samples, 1.0 - inked(ink, samples))
+    lengths = np.hypot(*(ends - starts).T)
+    return np.asarray(bare * (lengths + 1) <= np.maximum(_GAP_PX, _GAP_SHARE * lengths))
+
+
+def inked(ink: Mask, samples: Samples) -> Floats:
+    """1 where a sample, or a point half a pixel beside its segment, lies on ink, else 0."""
+    image = ink.astype(np.float32)
+    aside = 0.5 * samples.normals[samples.segment]
+    sides = [values_at(image, samples.points + offset * aside) for offset in (-1.0, 0.0, 1.0)]
+    return np.asarray(np.maximum.reduce(sides))
+
+
+def suppressed(corners: Points, pairs: Indices, plausible: NDArray[np.bool_], near: Nearest) -> NDArray[np.bool_]:
+    """Which pairs pass by a corner that they should end in (rule *suppression*).
+
+    p-r is refused when a corner q lies within 3 px of the segment and p-q and q-r are plausible: every crossing is a
+    corner, so no true edge passes through one. corners: (C, 2) in px; pairs: (P, 2) indices of corners, lower first;
+    plausible: (P,); near: the nearest corner of each pixel.
+    """
+    samples = sampled(corners[pairs[:, 0]], corners[pairs[:, 1]], trim_px=0.0)
+    x, y = np.rint(samples.points).astype(np.intp).T
+    between = near.vertex[y, x].astype(np.intp)
+    p, r = pairs[samples.segment].T
+    hit = (near.distance_px[y, x] <= _NEAR_PX) & (between != p) & (between != r)
+    p, q, r, segment = p[hit], between[hit], r[hit], samples.segment[hit]
+    ahead = _is_between(corners, p, q, r)
+    known = _keys(pairs[plausible], len(corners))
+    joined = _known(p, q, known, corners) & _known(q, r, known, corners) & ahead
+    refused = np.zeros(len(pairs), bool)
+    refused[segment[joined]] = True
+    return refused
+
+
+def redundant(ink: Mask, starts: Points, ends: Points, order: Indices) -> NDArray[np.bool_]:
+    """Which segments the others cover anyway (rule *prune*): looked at in `order`, dropped when 80 % is covered twice.
+
+    starts, ends: (P, 2) in px. order: indices of the segments that may be dropped, least trusted first.
+    """
+    cover = np.zeros(ink.shape, np.int16)
+    masks = [_footprint(start, end, ink.shape) for start, end in zip(starts, ends, strict=True)]
+    for ys, xs in masks:
+        cover[ys, xs] += 1
+    dropped = np.zeros(len(starts), bool)
+    for index in order.tolist():
+        ys, xs = masks[index]
+        if (cover[ys, xs] >= 2).mean() >= 0.8:
+            dropped[index] = True
+            cover[ys, xs] -= 1
+    return dropped
+
+
+def _footprint(start: NDArray[np.float64], end: NDArray[np.float64], shape: tuple[int, ...]) -> tuple[Indices, Indices]:
+    """The pixels within about a pixel of a segment, each once."""
+    low = np.maximum(np.floor(np.minimum(start, end)).astype(int) - 2, 0)
+    size = np.ceil(np.maximum(start, end)).astype(int) + 3 - low
+    canvas = np.zeros((size[1], size[0]), np.uint8)
+    ends = np.rint((np.stack([start, end]) - low) * (1 << _SHIFT)).astype(np.int32)
+    cv2.polylines(canvas, [ends], False, 1, 3, cv2.LINE_8, _SHIFT)
+    ys, xs = np.nonzero(canvas[: shape[0] - low[1], : shape[1] - low[0]])
+    return ys + low[1], xs + low[0]
+
+
+def _is_between(corners: Points, p: Indices, q: Indices, r: Indices) -> NDArray[np.bool_]:
+    """Whether q's foot lies inside the segment p-r."""
+    along = corners[r] - corners[p]
+    share = ((corners[q] - corners[p]) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-9)
+    return np.asarray((share > 0) & (share < 1))
+
+
+def _keys(pairs: Indices, count: int) -> Indices:
+    return np.sort(pairs.min(axis=1) * count + pairs.max(axis=1))
+
+
+def _known(a: Indices, b: Indices, known: Indices, corners: Points) -> NDArray[np.bool_]:
+    """Whether a-b is among the known pairs, or too short to have a lines channel between its two discs."""
+    close = np.hypot(*(corners[a] - corners[b]).T) <= 2 * TRIM_PX
+    keys = np.minimum(a, b) * len(corners) + np.maximum(a, b)
+    at = np.minimum(np.searchsorted(known, keys), max(0, len(known) - 1))
+    return np.asarray(close | (known[at] == keys)) if len(known) else close

@@ -1,0 +1,115 @@
+"""Which pairs of vertices a straight line joins: Eq. 2, feedback and the repairs, on pairs that the ink connects."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.graph.anchors import Anchored, nearest
+from daemon.graph.feedback import Adaptation, select
+from daemon.graph.plausibility import Floats, pairs_on_ink, plausibilities
+from daemon.graph.repairs import TRIM_PX, redundant, suppressed, without_gap
+from daemon.graph.skeleton import Chain, Indices, Skeleton
+from daemon.ink import Mask
+from daemon.shapes import Points, Segmentation
+
+BETA_PX = 1.8
+"""Width of the strip of Eq. 2 (Raghav et al. 2020, Sec. 5.3, adaptive)."""
+_HOPS = 3
+_BEND_PX = 1.2
+"""A chain that leaves its chord by more than this is a curve."""
+
+
+def equations_alone(
+    segmentation: Segmentation, vertices: Points, ink: Mask, adaptation: Adaptation, *, width_px: float
+) -> tuple[Indices, Floats]:
+    """The edges of Eqs. 1 to 3 with no repair: pairs (E, 2) of vertices and their eta (E,) (Raghav et al. 2020, 3.3).
+
+    Draws most lines two or three times: an edge that passes through a vertex is as plausible as its two halves.
+    """
+    pairs = pairs_on_ink(vertices, ink)
+    eta = plausibilities(segmentation.lines, *_ends(vertices, pairs), width_px=BETA_PX)
+    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px, refine=lambda selection: selection)
+    return pairs[chosen], eta[chosen]
+
+
+def straight_edges(
+    segmentation: Segmentation,
+    anchored: Anchored,
+    skeleton: Skeleton,
+    chains: list[Chain],
+    ink: Mask,
+    adaptation: Adaptation,
+    *,
+    width_px: float,
+) -> Indices:
+    """Pairs (E, 2) of vertices that a straight line joins, each line once.
+
+    Candidates are pairs at most three chains apart, so their number grows with the vertices, not with their square.
+    A pair is refused where its eta is below its threshold (Eqs. 2 and 3; both discs trimmed off, corners on the way
+    counted as line), where ink is missing along it, where it passes by a corner, where its own chain bends, and where
+    other edges cover it.
+    """
+    vertices = anchored.vertices[: anchored.corners]
+    pairs, bends = _candidates(anchored, skeleton, chains)
+    starts, ends = _ends(vertices, pairs)
+    response = segmentation.lines + segmentation.corners
+    eta = plausibilities(response, starts, ends, width_px=BETA_PX, trim_px=TRIM_PX)
+    possible = without_gap(ink, starts, ends) & (bends <= _BEND_PX)
+    near = nearest(vertices, (ink.shape[0], ink.shape[1]))
+
+    def refine(plausible: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        sound = plausible & possible
+        kept = sound.copy()
+        kept[sound] = ~suppressed(vertices, pairs[sound], np.ones(int(sound.sum()), bool), near)
+        return kept
+
+    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px, refine=refine)
+    pairs, bends, eta = pairs[chosen], bends[chosen], eta[chosen]
+    unbacked = np.flatnonzero(bends < 0)
+    order = unbacked[np.argsort(eta[unbacked], kind="stable")]
+    return pairs[~redundant(ink, *_ends(vertices, pairs), order)]
+
+
+def bend_px(skeleton: Skeleton, chain: Chain, vertices: Points) -> float:
+    """How far a chain leaves the straight line between its vertices, in px, away from the vertices' discs."""
+    if chain.start == chain.end:
+        return np.inf
+    p, q = vertices[chain.start], vertices[chain.end]
+    length = float(np.hypot(*(q - p)))
+    if not chain.path or length == 0:
+        return 0.0
+    x, y = (skeleton.pixels[chain.path] - p).T
+    across = np.abs(x * (q - p)[1] - y * (q - p)[0]) / length
+    return float(across.max())
+
+
+def _candidates(anchored: Anchored, skeleton: Skeleton, chains: list[Chain]) -> tuple[Indices, Floats]:
+    """Pairs of corners (P, 2), lower first, that few chains join, and the least bend of a chain that joins them.
+
+    The bend is -1 where no chain joins the two.
+    """
+    bends: dict[tuple[int, int], float] = {}
+    neighbours: list[set[int]] = [set() for _ in anchored.vertices]
+    for chain in chains:
+        if chain.start != chain.end:
+            pair = (min(chain.start, chain.end), max(chain.start, chain.end))
+            bends[pair] = min(bends.get(pair, np.inf), bend_px(skeleton, chain, anchored.vertices))
+            neighbours[chain.start].add(chain.end)
+            neighbours[chain.end].add(chain.start)
+    pairs = [(p, q) for p in range(anchored.corners) for q in _within(p, neighbours) if p < q < anchored.corners]
+    found = np.array(pairs, np.intp).reshape(-1, 2)
+    return found, np.array([bends.get(pair, -1.0) for pair in pairs])
+
+
+def _within(vertex: int, neighbours: list[set[int]]) -> list[int]:
+    """The vertices at most three chains away, in order."""
+    reached = front = {vertex}
+    for _ in range(_HOPS):
+        front = set().union(*(neighbours[v] for v in front)) - reached
+        reached = reached | front
+    return sorted(reached)
+
+
+def _ends(vertices: Points, pairs: Indices) -> tuple[Points, Points]:
+    return vertices[pairs[:, 0]], vertices[pairs[:, 1]]
