@@ -1,0 +1,133 @@
+"""explain.png: what was understood of a page, at one look."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.ink import Mask, ink_mask, thin
+from daemon.report import canvas
+from daemon.report.canvas import Colour, Picture
+from daemon.report.fidelity import within
+from daemon.shapes import Drawing, LineGraph, Map, PageImage, Points, Segmentation
+
+_TILE_PX = 720
+_MARGIN_PX = 28
+_HEAD_PX = 56
+_WORDS_PX = 34
+_MISSED_PX = 2.5
+
+
+def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawing: Drawing, *, name: str) -> Picture:
+    """Four tiles with their legends: the page, the network's channels on it, the graph, and the strokes.
+
+    segmentation, graph and drawing: in px of this page. name: of the picture, for the heading. Returns uint8
+    (H, W, 3), about 1500 px wide.
+    """
+    scale = _TILE_PX / max(page.grey.shape)
+    tiles = [
+        ([("the page", canvas.WORDS)], _enlarged(page.grey, scale)),
+        (
+            [("the network sees: ", canvas.WORDS), ("lines", canvas.BLUE), ("corners", canvas.ORANGE)],
+            _channels(segmentation, scale),
+        ),
+        _graph(page, graph, scale),
+        _strokes(page, drawing, scale),
+    ]
+    height, width = page.grey.shape
+    size = f"{page.given_width_px} × {page.given_height_px} px, understood at {width} × {height} px"
+    return _laid_out(tiles, name, size)
+
+
+_Legend = list[tuple[str, Colour]]
+
+
+def _graph(page: PageImage, graph: LineGraph, scale: float) -> tuple[_Legend, Picture]:
+    tile = _faded(page.grey, scale)
+    for edge in graph.edges:
+        canvas.line(tile, _on_tile(edge.polyline, scale), canvas.GREEN if len(edge.polyline) <= 2 else canvas.BLUE, 3)
+    for vertex in _on_tile(graph.vertices, scale):
+        canvas.dot(tile, vertex, 4.0, canvas.ORANGE, canvas.PAPER)
+    straight = sum(len(edge.polyline) <= 2 for edge in graph.edges)
+    legend = [
+        (canvas.counted(len(graph.vertices), "vertex", "vertices"), canvas.ORANGE),
+        (canvas.counted(straight, "straight edge", "straight edges"), canvas.GREEN),
+        (canvas.counted(len(graph.edges) - straight, "bent edge", "bent edges"), canvas.BLUE),
+    ]
+    return legend, tile
+
+
+def _strokes(page: PageImage, drawing: Drawing, scale: float) -> tuple[_Legend, Picture]:
+    tile = _faded(page.grey, scale)
+    missed = _missed(page, drawing)
+    for stroke, colour in zip(drawing.strokes, canvas.many_colours(), strict=False):
+        points = _on_tile(stroke.points, scale)
+        canvas.line(tile, points, colour, 3)
+        canvas.dot(tile, points[0], 4.5, canvas.PAPER, colour)
+    for y, x in np.argwhere(missed):
+        canvas.dot(tile, _on_tile(np.array([[x, y]], float), scale)[0], 2.0, canvas.RED)
+    legend = [(canvas.counted(len(drawing.strokes), "stroke", "strokes") + ", begun at the ring", canvas.WORDS)]
+    return legend + ([(f"{int(missed.sum())} px of ink not drawn", canvas.RED)] if missed.any() else []), tile
+
+
+def _missed(page: PageImage, drawing: Drawing) -> Mask:
+    """The centre line of ink that no stroke passes."""
+    ink = ink_mask(page.grey)
+    return thin(ink) & ~within([stroke.points for stroke in drawing.strokes], ink.shape, _MISSED_PX)
+
+
+def _channels(segmentation: Segmentation, scale: float) -> Picture:
+    tile = _resized(np.full((*segmentation.lines.shape, 3), 255, np.float32), scale)
+    for channel, colour in ((segmentation.lines, canvas.BLUE), (segmentation.corners, canvas.ORANGE)):
+        share = _resized(channel, scale)[..., None]
+        tile = tile * (1 - share) + share * np.array(colour, np.float32)
+    return _bytes(tile)
+
+
+def _faded(grey: NDArray[np.uint8], scale: float) -> Picture:
+    """The page, pale, so that thin lines on it can be told from it."""
+    return _bytes(255 - (255 - _enlarged(grey, scale).astype(np.float32)) * 0.28)
+
+
+def _enlarged(grey: NDArray[np.uint8], scale: float) -> Picture:
+    return _bytes(_resized(np.repeat(grey[..., None], 3, axis=2).astype(np.float32), scale))
+
+
+def _bytes(levels: Map) -> Picture:
+    return np.asarray(np.rint(np.clip(levels, 0, 255)), np.uint8)
+
+
+def _resized(image: Map, scale: float) -> Map:
+    """Pixels stay visible squares where a page is enlarged, and are averaged where it is made smaller."""
+    size = (max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale)))
+    how = cv2.INTER_AREA if scale < 1 else cv2.INTER_NEAREST
+    return np.asarray(cv2.resize(image, size, interpolation=how), np.float32)
+
+
+def _on_tile(points: Points, scale: float) -> Points:
+    return (points + 0.5) * scale - 0.5
+
+
+def _laid_out(tiles: list[tuple[_Legend, Picture]], name: str, size: str) -> Picture:
+    height, width = tiles[0][1].shape[:2]
+    pitch_x, pitch_y = max(width, _TILE_PX // 2) + _MARGIN_PX, height + _WORDS_PX + _MARGIN_PX
+    picture = canvas.blank(2 * pitch_x + _MARGIN_PX, 2 * pitch_y + _HEAD_PX, canvas.DESK)
+    right = picture.shape[1] - _MARGIN_PX
+    canvas.write(picture, size, (right, 38), canvas.QUIET, align="right")
+    room = right - _MARGIN_PX * 2 - canvas.words_width_px(size)
+    canvas.write(
+        picture, canvas.shortened(name, room, size_px=22, weight=600), (_MARGIN_PX, 38), size_px=22, weight=600
+    )
+    for index, (legend, tile) in enumerate(tiles):
+        left, top = _MARGIN_PX + index % 2 * pitch_x, _HEAD_PX + index // 2 * pitch_y
+        canvas.paste(picture, tile, left, top)
+        canvas.box(picture, (left - 1, top - 1), (left + width, top + height), canvas.FRAME)
+        _write_legend(picture, legend, left, top + height + 22)
+    return picture
+
+
+def _write_legend(picture: Picture, legend: _Legend, left: float, base: float) -> None:
+    for words, colour in legend:
+        canvas.write(picture, words, (left, base), colour, weight=500)
+        left += canvas.words_width_px(words, weight=500) + 18

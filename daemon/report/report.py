@@ -1,0 +1,107 @@
+"""report.json: the figures of one job."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Literal, TypeAlias
+
+from daemon.report.fidelity import Fidelity
+from daemon.shapes import LineGraph, PageImage, Toolpath
+
+FidelityOf: TypeAlias = Literal["planned", "executed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What is known of a job, in the order in which report.json tells it."""
+
+    given_width_px: int
+    given_height_px: int
+    given_sha256: str
+    page_width_px: int
+    page_height_px: int
+    line_width_px: float
+    """Of the lines on the page, full width."""
+    vertices: int
+    edges: int
+    strokes: int
+    drawn_mm: float
+    travelled_mm: float
+    estimated_s: float
+    real_s: float | None
+    """What the machine took; a simulated one has its own clock. None until it has drawn."""
+    stage_s: Mapping[str, float]
+    """Seconds of each stage of planning, in order."""
+    peak_memory_mb: float
+    """Of the planning process, resident."""
+    fidelity_of: FidelityOf
+    """Which lines were compared with the page: the planned ones or the ink that a simulated machine has kept."""
+    fidelity: Fidelity
+
+
+def planned_report(
+    page: PageImage,
+    graph: LineGraph,
+    toolpath: Toolpath,
+    fidelity: Fidelity,
+    *,
+    line_width_px: float,
+    estimated_s: float,
+    stage_s: Mapping[str, float],
+    peak_memory_mb: float,
+) -> Report:
+    """What is known once a job is planned; `fidelity` is that of its planned strokes."""
+    page_height_px, page_width_px = page.grey.shape
+    return Report(
+        given_width_px=page.given_width_px,
+        given_height_px=page.given_height_px,
+        given_sha256=page.sha256,
+        page_width_px=page_width_px,
+        page_height_px=page_height_px,
+        line_width_px=line_width_px,
+        vertices=len(graph.vertices),
+        edges=len(graph.edges),
+        strokes=len(toolpath.strokes),
+        drawn_mm=toolpath.drawn_mm,
+        travelled_mm=toolpath.travelled_mm,
+        estimated_s=estimated_s,
+        real_s=None,
+        stage_s=dict(stage_s),
+        peak_memory_mb=peak_memory_mb,
+        fidelity_of="planned",
+        fidelity=fidelity,
+    )
+
+
+def executed_report(planned: Report, fidelity: Fidelity, *, real_s: float) -> Report:
+    """The report once a simulated machine has drawn: `fidelity` is that of its ink, `real_s` its own seconds."""
+    return replace(planned, real_s=real_s, fidelity_of="executed", fidelity=fidelity)
+
+
+def to_json(report: Report) -> str:
+    """report.json: every number to four decimals at most, one key a line."""
+    return json.dumps(_rounded(asdict(report)), indent=2, allow_nan=False) + "\n"
+
+
+def from_json(text: str) -> Report:
+    """The report that `to_json` wrote. Raises ValueError naming what is missing or unknown."""
+    found = json.loads(text)
+    if not isinstance(found, dict):
+        raise ValueError("report.json holds no report: plan the picture again")
+    names = {field.name for field in fields(Report)}
+    if strange := names ^ found.keys():
+        raise ValueError(
+            f"report.json is not of this version, see {', '.join(sorted(strange))}: plan the picture again"
+        )
+    return Report(**{**found, "fidelity": Fidelity(**found["fidelity"])})
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _rounded(each) for name, each in value.items()}
+    if isinstance(value, float) and math.isfinite(value):
+        return round(value, 4)
+    return value
