@@ -1,0 +1,75 @@
+# Everything that is built, tested and shown. Needs make and Python 3.11 or newer; `make` alone says what there is.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
+	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo "$$p"; break; }; done)
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
+PINS := pyproject.toml constraints.txt
+CODE := daemon firmware_protocol training tests
+
+# onnxruntime reports home from its first import on unless this is set before it.
+export ORT_DISABLE_TELEMETRY := 1
+
+.PHONY: help demo test test-training test-system check format bench clean
+
+help: ## What there is to make
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+demo: $(VENV)/runtime ## Draw our own drawings on a simulated plotter; demo/contact_sheet.png shows them
+	@$(BIN)/python -m tests.demo demo
+
+test: $(VENV)/test ## Every test that needs neither PyTorch nor a system package
+	$(BIN)/python -m pytest
+
+test-training: $(VENV)/test $(VENV)/training ## The tests that need PyTorch
+	$(BIN)/python -m pytest -m training
+
+test-system: $(VENV)/test ## The tests that need system packages or the senders of other people
+	$(BIN)/python -m pytest -m system
+
+check: $(VENV)/test $(VENV)/check ## Form, lint, types, import contracts and unit tests: the fast ones, while coding
+	$(BIN)/ruff format --check $(CODE)
+	$(BIN)/ruff check $(CODE)
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/python -m pytest tests/daemon tests/firmware_protocol
+
+format: $(VENV)/check ## Bring the code into form
+	$(BIN)/ruff format $(CODE)
+	$(BIN)/ruff check --fix $(CODE)
+
+bench: $(VENV)/runtime ## The figures: seconds of each stage, lines a second, memory
+	@$(BIN)/python -m tests.benchmarks
+
+clean: ## Remove what was made, also .venv and demo
+	rm -rf $(VENV) demo build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	find $(CODE) -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/runtime: $(PINS) | $(VENV)/made
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/test $(VENV)/check $(VENV)/training: $(VENV)/%: $(VENV)/runtime
+	$(PIP) --editable '.[$*]'
+	@touch $@
+
+$(VENV)/made:
+	@test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer was found: install python3'; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || $(MAKE) --no-print-directory python3-venv
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+# Debian and Ubuntu keep the parts that make a virtual environment in a package of their own.
+.PHONY: python3-venv
+python3-venv:
+	@if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+		apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq python3-venv >/dev/null; \
+	else \
+		echo 'Python cannot make a virtual environment here. Run:  sudo apt-get install python3-venv'; exit 1; \
+	fi
