@@ -1,0 +1,133 @@
+"""Lines counted into the controller's receive buffer, one answer a line, and what the answers say about the paper."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from firmware_protocol.errors import LocalProtocolError
+
+BARRIER = "G4 P0.01"
+"""A dwell is answered only after every motion before it has ended."""
+
+LONGEST_LINE = 79
+"""From 80 characters on GRBL answers error:11."""
+
+SEGMENT_LINES = 6
+"""Lines whose steps may still wait behind the planner (its segment buffer), one of them answered by a reset."""
+
+_ALONE = re.compile(r"\$|G0*10(?!\d)|G(?:28|30)\.1")
+"""A `$` command wants the controller idle, and storing a value makes it deaf for some ms: nothing is sent behind it."""
+_BARRIERS = re.compile(r"G0*4(?![\d.])|M0*[02](?!\d)|M30(?!\d)")
+_DWELL = re.compile(r"G0*4P(\d+(?:\.\d*)?)")
+_FORBIDDEN = re.compile(r"[^ -~]|[?!~();]")
+"""Real-time characters act in the middle of a line and inside comments, so neither is ever sent."""
+
+
+class Flow:
+    """The lines of one task on their way; never more bytes unanswered than the controller can hold.
+
+    room_bytes: the controller's receive buffer; None sends the next line only after the answer to the one before.
+    """
+
+    def __init__(self, texts: Sequence[str], *, room_bytes: int | None) -> None:
+        self._lines = [text.encode("ascii") + b"\n" for text in texts]
+        self._room_bytes = room_bytes
+        plain = [text.replace(" ", "").upper() for text in texts]
+        self._alone = {index for index, text in enumerate(plain) if _ALONE.match(text)}
+        self._barriers = {index for index, text in enumerate(plain) if _BARRIERS.search(text)}
+        self._owed_bytes = 0
+        self.sent = 0
+        self.answered = 0
+        self.drawn = 0
+        """All lines before this one have been executed, not only planned: a barrier behind them has been passed."""
+
+    @property
+    def done(self) -> bool:
+        """Every line has been answered."""
+        return self.answered == len(self._lines)
+
+    @property
+    def owed(self) -> int:
+        """Lines sent and not answered."""
+        return self.sent - self.answered
+
+    @property
+    def homing(self) -> bool:
+        """The controller is busy with `$H`, in which it answers nothing, not even `?`."""
+        return self.owed > 0 and self._lines[self.answered].startswith(b"$H")
+
+    @property
+    def dwell_s(self) -> float:
+        """Seconds that the unanswered lines ask the controller to wait."""
+        owed = b"".join(self._lines[self.answered : self.sent]).decode("ascii").replace(" ", "").upper()
+        return sum(float(seconds) for seconds in _DWELL.findall(owed))
+
+    def text(self, line: int) -> str:
+        """The line as it is sent."""
+        return self._lines[line].decode("ascii").rstrip()
+
+    def take(self) -> bytes:
+        """The next lines that fit, to be written now."""
+        first = self.sent
+        while self.sent < len(self._lines) and self._fits(self.sent):
+            self._owed_bytes += len(self._lines[self.sent])
+            self.sent += 1
+        return b"".join(self._lines[first : self.sent])
+
+    def answer(self) -> int | None:
+        """The number of the line that an answer belongs to; None when no answer is owed."""
+        if not self.owed:
+            return None
+        line = self.answered
+        self._owed_bytes -= len(self._lines[line])
+        self.answered += 1
+        # A reset in a dwell answers the dwell without executing it; an answer to the line behind is proof.
+        if line - 1 in self._barriers:
+            self.drawn = line
+        return line
+
+    def certainly_drawn(self, *, planner_blocks: int) -> int:
+        """All lines before this one have been executed: proven by a barrier, or pushed out of the planner."""
+        return max(self.drawn, self.answered - planner_blocks - SEGMENT_LINES, 0)
+
+    def _fits(self, line: int) -> bool:
+        if not self.owed:
+            return True
+        if self._room_bytes is None or line in self._alone or line - 1 in self._alone:
+            return False
+        return self._owed_bytes + len(self._lines[line]) <= self._room_bytes
+
+
+def check(texts: Sequence[str], *, buffer_bytes: int) -> None:
+    """Raises LocalProtocolError for a line that this controller cannot take as it stands."""
+    moved = False
+    for number, text in enumerate(texts, 1):
+        if fault := _fault(text, min(LONGEST_LINE, buffer_bytes - 1)):
+            raise LocalProtocolError(f"line {number} ({text[:60]!r}) {fault}")
+        if moved and text.lstrip().startswith("$"):
+            raise LocalProtocolError(
+                f"line {number} ({text!r}) is refused by a moving machine: put it before the G-code"
+            )
+        moved = moved or not text.lstrip().startswith("$")
+
+
+def _fault(text: str, longest: int) -> str:
+    if _FORBIDDEN.search(text):
+        return "holds a comment, a control or a real-time character: remove it"
+    if len(text) > longest:
+        return f"is longer than the {longest} characters that the controller takes: shorten it"
+    return ""
+
+
+def strokes_before(strokes: Sequence[int | None], line: int) -> int:
+    """Strokes that lie wholly before `line`. strokes: the stroke of each line, never falling."""
+    return next((stroke for stroke in strokes[line:] if stroke is not None), strokes_touched(strokes, len(strokes)))
+
+
+def strokes_touched(strokes: Sequence[int | None], lines: int) -> int:
+    """No stroke from this number on has a line among the first `lines`."""
+    last = next((stroke for stroke in reversed(strokes[:lines]) if stroke is not None), None)
+    if last is not None:
+        return last + 1
+    return next((stroke for stroke in strokes if stroke is not None), 0)

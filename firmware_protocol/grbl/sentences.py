@@ -1,0 +1,76 @@
+"""What a person is told when a GRBL controller takes no job or a job ends: what, where, and what to do."""
+
+from __future__ import annotations
+
+from firmware_protocol.grbl import codes
+from firmware_protocol.grbl.states import State
+
+LOCKED = (
+    "the controller is locked by an alarm: look what blocks the machine, then home it, "
+    "or switch the controller off and on"
+)
+RESTARTED = (
+    "the controller restarted by itself, so its position is lost: check its power supply and the cable, "
+    "set the pen to its origin and put in a new sheet"
+)
+ALARMED = f"the controller reports an alarm and locked itself: {codes.ALARMS[1].remedy}"
+STOPPED = "stopped on request, the position is kept: put in a new sheet, or continue with the first stroke not drawn"
+STOPPED_HOMING = "stopped on request while homing, so the position is unknown: home the machine before the next drawing"
+FINISHED = "every line was drawn"
+UNPLUGGED = "the port is gone: plug the machine in again, set the pen to its origin and put in a new sheet"
+
+
+def outdated(firmware: str) -> str:
+    return f"the controller runs {firmware}, which does not report its state: flash GRBL 1.1"
+
+
+def rejected(number: int, text: str, code: int) -> str:
+    """number: from 1."""
+    return f"line {number} ({text!r}) was refused with error:{code}, {codes.error(code)}"
+
+
+def refused_by_homing(code: int) -> str:
+    return f"homing was refused with error:{code}, {codes.error(code)}"
+
+
+def alarmed(code: int) -> str:
+    return f"ALARM:{code}, {codes.alarm(code)}"
+
+
+def silent(seconds: float) -> str:
+    return f"the controller has not answered for {seconds:g} s: check the cable and its power supply"
+
+
+def stuck(seconds: float, number: int, text: str) -> str:
+    """number: from 1, of the line whose answer is missing."""
+    return (
+        f"the controller has stood idle for {seconds:g} s without answering line {number} ({text!r}), "
+        f"so a byte was lost on the way: check the cable, then draw on a new sheet"
+    )
+
+
+def noise(fault: str) -> str:
+    return f"the controller sends noise: {fault}"
+
+
+def late(state: State, seconds: float, *, found: bool, heard: str) -> str:
+    """For a state that has lasted too long.
+
+    found: a status report came before any banner. heard: the last state or other word of the device, or "".
+    """
+    match state:
+        case State.WAITING if found:
+            return f"the controller is in state {heard} and cannot be reset now: wait until the machine stands still"
+        case State.WAITING:
+            return _no_grbl(seconds, heard)
+        case State.GREETED:
+            return f"the controller is in state {heard or 'unknown'} instead of Idle: end what it does, close its door"
+        case State.HOMING:
+            return f"homing has not ended after {seconds:g} s: check the limit switches and $23 to $27"
+        case _:
+            return silent(seconds)
+
+
+def _no_grbl(seconds: float, heard: str) -> str:
+    said = f"what answers is not GRBL (it said {heard[:60]!r})" if heard else f"nothing answered within {seconds:g} s"
+    return f"{said}: check the port, the baud rate and that the controller has power"
