@@ -18,8 +18,8 @@ CREATE TABLE IF NOT EXISTS events (
     number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, words TEXT NOT NULL
 )
 """
-_SHEET = "new sheet"
-"""Stands in the place of a state in the rows that belong to no job."""
+_SHEET, _HELD, _GO = "new sheet", "held", "go"
+"""Stand in the place of a state in the rows that belong to no job."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,14 @@ class Journal:
     """Append-only, SQLite with WAL and synchronous=FULL: a step that was recorded survives a power cut.
 
     Every method may be called from any thread and raises DiskTrouble where the file cannot be read or written; the
-    step has then not happened. `sheet_used` is true from the first drawing after a new sheet came in.
+    step has then not happened. `sheet_used` is true from the first drawing after a new sheet came in; `held` says why
+    no job may start, and is empty when they may.
     """
 
     def __init__(self, path: Path, *, now: Callable[[], float] = time.time) -> None:
         self._path, self._now, self._lock = path, now, threading.RLock()
         self._jobs: dict[str, Job] = {}
-        self.sheet_used = False
+        self.sheet_used, self.held = False, ""
         try:
             self._rows = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
             self._prepare()
@@ -61,7 +62,10 @@ class Journal:
         for at_s, job, state, words in self._rows.execute(
             "SELECT at_s, job, state, words FROM events ORDER BY number"
         ).fetchall():
-            self._remember(at_s, job, state, words)
+            if job:
+                self._remember(at_s, job, state, words)
+            else:
+                self._note(state, words)
 
     def jobs(self, *states: State) -> list[Job]:
         """The jobs in one of these states (none given: all), in the order in which they came."""
@@ -89,7 +93,18 @@ class Journal:
         """A person has put a new sheet in."""
         with self._lock:
             self._insert("", _SHEET, "")
-            self.sheet_used = False
+            self._note(_SHEET, "")
+
+    def hold(self, words: str) -> None:
+        """No job may start, also after a restart. Holds for this daemon even when DiskTrouble is raised."""
+        with self._lock:
+            self.held = words
+            self._insert("", _HELD, words)
+
+    def go(self) -> None:
+        with self._lock:
+            self._insert("", _GO, "")
+            self._note(_GO, "")
 
     def close(self) -> None:
         with self._lock:
@@ -109,11 +124,14 @@ class Journal:
         return at_s
 
     def _remember(self, at_s: float, job_id: str, state: str, words: str) -> Job:
-        if state == _SHEET:
-            self.sheet_used = False
-            return Job("", "", State.DONE, "", at_s)
         before = self._jobs.get(job_id, Job(job_id, words, State.QUEUED, "", at_s))
         said = "" if job_id not in self._jobs else words
         self._jobs[job_id] = replace(before, state=State(state), words=said, changed_s=at_s)
         self.sheet_used = self.sheet_used or state == State.DRAWING.value
         return self._jobs[job_id]
+
+    def _note(self, what: str, words: str) -> None:
+        if what == _SHEET:
+            self.sheet_used = False
+        else:
+            self.held = words if what == _HELD else ""

@@ -1,0 +1,212 @@
+"""The desk: which job is next for the worker and for the machine, what holds them up, and who is told."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from daemon.errors import DiskTrouble, LinedrawError
+from daemon.jobs.folder import JobFolders
+from daemon.jobs.journal import Job, Journal
+from daemon.jobs.states import State
+
+DISK_RETRY_S = 10.0
+_INTERRUPTED = (
+    "the daemon ended while it was drawing, where the pen stands is unknown: look at the sheet, and drop the picture "
+    "into the inbox again to draw it anew"
+)
+_DROPPED = "a person dropped the job"
+_LOUD = {State.FAILED: logging.ERROR, State.INTERRUPTED: logging.ERROR, State.CANCELLED: logging.WARNING}
+_READY = (State.PLANNED, State.WAITING)
+_BEFORE_INK = (State.QUEUED, State.PLANNED, State.WAITING, State.INTERRUPTED)
+
+
+class Desk:
+    """Every step of a job goes through here: into the journal first, then to people. Calls come from any thread.
+
+    say: an event in words, with `job`, `level` and figures by keyword. show: changed fields of the status.
+    """
+
+    def __init__(
+        self,
+        journal: Journal,
+        folders: JobFolders,
+        *,
+        say: Callable[..., None],
+        show: Callable[..., None],
+        asks_for_sheets: bool,
+        ahead: int = 2,
+    ) -> None:
+        self.journal, self.folders, self.say, self.show = journal, folders, say, show
+        self.ending = False
+        self.changes = 0
+        """Counts what has changed, so that a change between a look and a `wait` is not slept over."""
+        self._asks_for_sheets, self._ahead = asks_for_sheets, ahead
+        self._cancelled: set[str] = set()
+        self._changed = threading.Condition(threading.RLock())
+
+    def recover(self, inbox: Path) -> None:
+        """After a start: finish what the last daemon left half done. Nothing moves because of it."""
+        self.folders.finish_claims(inbox)
+        for job_id in self.folders.strays({job.id for job in self.journal.jobs()}):
+            self._add(job_id, job_id)
+        for job in self.journal.jobs(State.PLANNING):
+            self.step(job.id, State.QUEUED, "the daemon ended while it was planning: it plans again")
+        for job in self.journal.jobs(State.DRAWING):
+            self.step(job.id, State.INTERRUPTED, _INTERRUPTED)
+            self.hold(f"job {job.id} was interrupted: look at the machine and the sheet")
+        self.show(held=self.held)
+
+    @property
+    def held(self) -> str:
+        """Why no job may start, in a sentence; empty when they may."""
+        return self.journal.held
+
+    def take(self, picture: Path, name: str) -> None:
+        """Make a job of a picture in the inbox. Raises DiskTrouble; it then still lies there."""
+        self._add(self.folders.take(picture), name)
+
+    def copy(self, picture: Path, name: str) -> str:
+        """Make a job of a copy of the picture. Returns the job's id. Raises DiskTrouble and FileNotFoundError."""
+        return self._add(self.folders.copy(picture), name)
+
+    def _add(self, job_id: str, name: str) -> str:
+        self.journal.add(job_id, name)
+        self.say("the picture is queued", job=job_id, state=State.QUEUED.value, name=name)
+        self._show_queue()
+        return job_id
+
+    def step(self, job_id: str, state: State, words: str = "", **figures: Any) -> None:
+        """Record the step and tell it. Raises DiskTrouble; the step has then not happened."""
+        self.journal.step(job_id, state, words)
+        level = _LOUD.get(state, logging.INFO)
+        self.say(words or f"the job is {state.value}", job=job_id, level=level, state=state.value, **figures)
+        if state in (State.FAILED, State.INTERRUPTED):
+            self.show(last_error=words)
+        self._show_queue()
+
+    def step_at_last(self, job_id: str, state: State, words: str, **figures: Any) -> None:
+        """As `step`, but a disk that takes nothing is waited for: what happened on paper must not be forgotten."""
+        while True:
+            try:
+                return self.step(job_id, state, words, **figures)
+            except DiskTrouble as error:
+                self.trouble(str(error), job=job_id)
+                self.wait(DISK_RETRY_S)
+                if self.ending:
+                    return None
+
+    def trouble(self, words: str, *, job: str = "") -> None:
+        """Say an error, once for as long as it stays the same."""
+        self.say(words, job=job, level=logging.ERROR)
+        self.show(last_error=words)
+
+    def begin_planning(self) -> Job | None:
+        """The next job for the worker, now in planning; None while enough is planned."""
+        with self._changed:
+            queued = self.journal.jobs(State.QUEUED)
+            if self.ending or not queued or len(self.journal.jobs(*_READY)) >= self._ahead:
+                return None
+            self.step(queued[0].id, State.PLANNING)
+            return queued[0]
+
+    def end_planning(self, job_id: str, *, failed: str = "") -> None:
+        """The worker is through with it; `failed` says why it could not be planned."""
+        with self._changed:
+            if job_id in self._cancelled:
+                self.step_at_last(job_id, State.CANCELLED, _DROPPED)
+            elif failed:
+                self.step_at_last(job_id, State.FAILED, failed)
+            else:
+                self.step_at_last(job_id, State.PLANNED, "")
+
+    def begin_drawing(self) -> Job | None:
+        """The next job for the machine, now in drawing; None while there is none or something holds it up."""
+        with self._changed:
+            ready = self.journal.jobs(*_READY)
+            if self.ending or self.held or not ready:
+                return None
+            if self._asks_for_sheets and self.journal.sheet_used:
+                self.let_wait("waiting for a new sheet: put one in and say `linedrawd next`")
+                return None
+            self.step(ready[0].id, State.DRAWING)
+            return ready[0]
+
+    def let_wait(self, words: str) -> None:
+        """The planned jobs wait, and `words` say for what."""
+        with self._changed:
+            for job in self.journal.jobs(State.PLANNED):
+                self.step(job.id, State.WAITING, words)
+            self.show(state="waiting", words=words)
+
+    def cancel(self, job_id: str) -> State:
+        """Drop a job; one that is being planned or drawn is marked and must be broken off. Returns its state before.
+
+        Raises LinedrawError when there is no such job or it is over.
+        """
+        with self._changed:
+            job = self.find(job_id)
+            if job.state in _BEFORE_INK:
+                self.step(job.id, State.CANCELLED, _DROPPED)
+            elif job.state in (State.PLANNING, State.DRAWING):
+                self._cancelled.add(job.id)
+            else:
+                raise LinedrawError(f"job {job.id} is {job.state.value} already: there is nothing to cancel")
+            return job.state
+
+    def is_cancelled(self, job_id: str) -> bool:
+        return job_id in self._cancelled
+
+    def find(self, job_id: str) -> Job:
+        """By its id or the number at its beginning. Raises LinedrawError."""
+        job = self.journal.job(job_id)
+        if job is None and job_id.isdecimal():
+            job = next((job for job in self.journal.jobs() if job.id.startswith(f"{int(job_id):06d}-")), None)
+        if job is None:
+            raise LinedrawError(f"there is no job {job_id}: `linedrawd jobs` lists them")
+        return job
+
+    def new_sheet(self) -> None:
+        self.journal.new_sheet()
+        self.say("a new sheet is in")
+        self._notify()
+
+    def hold(self, words: str) -> None:
+        """No further job starts until a person says `go`, also after a restart."""
+        try:
+            self.journal.hold(words)
+        except DiskTrouble as error:
+            self.trouble(str(error))
+        self.say(f"no job starts until a person says `linedrawd go`: {words}", level=logging.WARNING)
+        self.show(state="held", words=words, held=words)
+        self._notify()
+
+    def go(self) -> None:
+        self.journal.go()
+        self.say("jobs may start again")
+        self.show(held="", state="idle", words="")
+        self._notify()
+
+    def end(self) -> None:
+        """The loops come to their end."""
+        self.ending = True
+        self._notify()
+
+    def wait(self, seconds: float, *, since: int | None = None) -> None:
+        """Until `changes` is no longer `since` (None: what it is now), or this long."""
+        with self._changed:
+            seen = self.changes if since is None else since
+            self._changed.wait_for(lambda: self.ending or self.changes != seen, seconds)
+
+    def _show_queue(self) -> None:
+        waiting = len(self.journal.jobs(*_READY))
+        self.show(jobs_queued=len(self.journal.jobs(State.QUEUED)), jobs_waiting=waiting)
+        self._notify()
+
+    def _notify(self) -> None:
+        with self._changed:
+            self.changes += 1
+            self._changed.notify_all()

@@ -1,0 +1,43 @@
+"""Planning: the next queued picture goes through the worker."""
+
+from __future__ import annotations
+
+from daemon.errors import BadPicture, LinedrawError
+from daemon.jobs.desk import Desk
+from daemon.jobs.folder import source_of
+from daemon.jobs.journal import Job
+from daemon.jobs.pool import Pool
+
+IDLE_S = 60.0
+
+
+class Planning:
+    """One turn plans one picture. A picture that cannot be planned fails alone."""
+
+    def __init__(self, desk: Desk, pool: Pool, machine: str) -> None:
+        self._desk, self._pool, self._machine = desk, pool, machine
+
+    def turn(self) -> float:
+        """Returns the seconds to wait for a change before the next turn."""
+        job = self._desk.begin_planning()
+        if job is None:
+            return IDLE_S
+        try:
+            self._plan(job)
+        except LinedrawError as error:
+            # Broken off because the daemon ends: the next one plans it again.
+            if not self._desk.ending:
+                self._desk.end_planning(job.id, failed=str(error))
+        else:
+            self._desk.end_planning(job.id)
+        finally:
+            self._desk.show(planning="", stage="")
+        return 0.0
+
+    def _plan(self, job: Job) -> None:
+        folder = self._desk.folders.path(job.id)
+        source = source_of(folder)
+        if source is None:
+            raise BadPicture(f"the picture of job {job.id} has gone from {folder}: drop it into the inbox again")
+        self._desk.show(planning=job.id)
+        self._pool.plan(source, folder, self._machine, progress=lambda stage: self._desk.show(stage=stage))

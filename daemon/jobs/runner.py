@@ -1,0 +1,81 @@
+"""The runner: takes jobs through their states in two loops, and takes the orders of people."""
+
+from __future__ import annotations
+
+import logging
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+
+from daemon.errors import LinedrawError
+from daemon.jobs.desk import DISK_RETRY_S, Desk
+from daemon.jobs.drawing import Drawing
+from daemon.jobs.planning import Planning
+from daemon.jobs.pool import Pool
+from daemon.jobs.states import State
+
+
+class Runner:
+    """`plan_on` and `draw_on` each run in a thread of their own until `end`; everything else comes from any thread.
+
+    The orders return a sentence for the person who gave them.
+    """
+
+    def __init__(self, desk: Desk, pool: Pool, planning: Planning, drawing: Drawing) -> None:
+        self._desk, self._pool, self._planning, self._drawing = desk, pool, planning, drawing
+
+    def plan_on(self) -> None:
+        self._turn_on(self._planning.turn)
+        self._pool.close()
+
+    def draw_on(self) -> None:
+        self._turn_on(self._drawing.turn)
+        self._drawing.close()
+
+    def take(self, picture: Path, name: str) -> None:
+        self._desk.take(picture, name)
+
+    def new_sheet(self) -> str:
+        self._desk.new_sheet()
+        return "a new sheet is in"
+
+    def stop(self) -> str:
+        """Hold at once, pen up, and freeze the queue."""
+        self._drawing.stop()
+        self._desk.hold("a person stopped the machine")
+        # Once more, for a job that began in between.
+        self._drawing.stop()
+        return "stopped, no job starts until you say `linedrawd go`"
+
+    def go(self) -> str:
+        self._desk.go()
+        return "jobs may start again"
+
+    def cancel(self, job_id: str) -> str:
+        before = self._desk.cancel(job_id)
+        if before is State.PLANNING:
+            self._pool.interrupt()
+        elif before is State.DRAWING:
+            self._drawing.stop()
+        return f"job {self._desk.find(job_id).id} is dropped (it was {before.value})"
+
+    def end(self) -> None:
+        """Hold at once, pen up; the loops come to their end."""
+        self._desk.end()
+        self._drawing.stop()
+        self._pool.close()
+
+    def _turn_on(self, turn: Callable[[], float]) -> None:
+        while not self._desk.ending:
+            seen = self._desk.changes
+            try:
+                self._desk.wait(turn(), since=seen)
+            except LinedrawError as error:
+                self._desk.trouble(str(error))
+                self._desk.wait(DISK_RETRY_S)
+            except Exception as error:
+                # A mistake of ours must not start anything: what the machine does is no longer known.
+                self._desk.say(traceback.format_exc(), level=logging.ERROR)
+                self._drawing.stop()
+                self._desk.hold(f"a mistake in linedrawd ({error!r}): please report it with linedrawd.log")
+                self._desk.wait(DISK_RETRY_S)

@@ -1,0 +1,172 @@
+"""What the daemon tells: the log, each job's own log, and status.json, for people and programs that only read files."""
+
+from __future__ import annotations
+
+import json
+import logging
+import logging.handlers
+import os
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from daemon.errors import DiskTrouble
+
+LOG_NAME = "linedrawd.log"
+JOB_LOG_NAME = "job.log"
+AT_MOST_EVERY_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """What status.json holds. `state` is one word, `words` a sentence; seconds come from the machine's time model."""
+
+    state: str = "starting"
+    words: str = ""
+    pid: int = 0
+    machine: str = ""
+    firmware: str = ""
+    port: str = ""
+    job: str = ""
+    picture: str = ""
+    stage: str = ""
+    strokes_done: int = 0
+    strokes_total: int = 0
+    percent: float = 0.0
+    seconds_left: float | None = None
+    planning: str = ""
+    jobs_queued: int = 0
+    jobs_waiting: int = 0
+    held: str = ""
+    last_error: str = ""
+    changed: str = ""
+
+
+class StatusBoard:
+    """The present status, written to its file when it has changed, at most once a second.
+
+    `change` may be called from any thread; `run` is the thread that writes, `tick` one turn of it.
+    """
+
+    def __init__(self, path: Path, *, wall: Callable[[], float] = time.time) -> None:
+        self._path, self._wall = path, wall
+        self._lock, self._changed, self._stopped = threading.Lock(), threading.Event(), threading.Event()
+        self._status, self._written, self._due_s = Status(pid=os.getpid()), Status(), float("-inf")
+
+    @property
+    def now(self) -> Status:
+        with self._lock:
+            return self._status
+
+    def change(self, **values: Any) -> None:
+        with self._lock:
+            self._status = replace(self._status, **values)
+        self._changed.set()
+
+    def tick(self, now: float) -> float:
+        """Write what has changed, if its time has come. Returns the seconds until the next file may be written."""
+        if now < self._due_s:
+            return self._due_s - now
+        self._changed.clear()
+        status = self.now
+        if status != self._written:
+            self._written, self._due_s = status, now + AT_MOST_EVERY_S
+            self._write(status)
+        return max(0.0, self._due_s - now)
+
+    def _write(self, status: Status) -> None:
+        text = json.dumps(asdict(status) | {"changed": clock(self._wall())}, indent=1, ensure_ascii=False)
+        part = self._path.with_suffix(".json.part")
+        try:
+            part.write_text(text + "\n", encoding="utf-8")
+            part.replace(self._path)
+        except OSError as error:
+            logging.getLogger("linedrawd").error(
+                "%s", f"{self._path} cannot be written ({error.strerror}): free the disk"
+            )
+
+    def run(self) -> None:
+        """Until `stop`; the last status is always written."""
+        while not self._stopped.is_set():
+            self._changed.wait()
+            self._stopped.wait(self.tick(time.monotonic()))
+        self._due_s = float("-inf")
+        self.tick(time.monotonic())
+
+    def stop(self) -> None:
+        self._stopped.set()
+        self._changed.set()
+
+
+class Diary:
+    """Says events: one line each in linedrawd.log and, where it concerns a job, in that job's own log.
+
+    Lines read `time LEVEL job words key=value ...`; a job is `-` where there is none. Both files may be moved away by
+    whoever rotates them.
+    """
+
+    def __init__(self, log_dir: Path, jobs_dir: Path, *, to_stderr: bool = False) -> None:
+        self._jobs_dir = jobs_dir
+        self._log = logging.getLogger("linedrawd")
+        self._log.setLevel(logging.INFO)
+        self._log.propagate = False
+        self._handlers: list[logging.Handler] = [_file_handler(log_dir)]
+        if to_stderr:
+            self._handlers.append(logging.StreamHandler())
+        for handler in self._handlers:
+            handler.setFormatter(_Line())
+            self._log.addHandler(handler)
+
+    def say(self, words: str, *, job: str = "", level: int = logging.INFO, **values: Any) -> None:
+        """May be called from any thread. A disk that takes no log stops nothing."""
+        said = " ".join([words, *(f"{key}={_value(value)}" for key, value in values.items())])
+        record = self._log.makeRecord("linedrawd", level, "", 0, said, (), None, extra={"job": job})
+        self._log.handle(record)
+        if job:
+            self._say_in_folder(job, _Line().format(record))
+
+    def _say_in_folder(self, job: str, line: str) -> None:
+        try:
+            with (self._jobs_dir / job / JOB_LOG_NAME).open("a", encoding="utf-8") as file:
+                file.write(line + "\n")
+        except OSError as error:
+            self._log.error(f"the log of the job cannot be written ({error.strerror})", extra={"job": job})
+
+    def close(self) -> None:
+        for handler in self._handlers:
+            self._log.removeHandler(handler)
+            handler.close()
+
+
+def _file_handler(log_dir: Path) -> logging.Handler:
+    try:
+        log_dir.mkdir(parents=True, exist_ok=True)
+        return logging.handlers.WatchedFileHandler(log_dir / LOG_NAME, encoding="utf-8", errors="backslashreplace")
+    except OSError as error:
+        raise DiskTrouble(
+            f"{log_dir / LOG_NAME} cannot be written ({error.strerror}): give another --log-dir"
+        ) from None
+
+
+class _Line(logging.Formatter):
+    def format(self, record: logging.LogRecord) -> str:
+        text = record.getMessage()
+        if record.exc_info:
+            text += " " + self.formatException(record.exc_info)
+        words = " ".join(text.split())
+        return f"{clock(record.created)} {record.levelname} {getattr(record, 'job', '') or '-'} {words}"
+
+
+def clock(at_s: float) -> str:
+    """Seconds since 1970 as `2026-11-24T08:00:00Z`."""
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(at_s))
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.3g}" if abs(value) < 100 else f"{value:.0f}"
+    text = str(value)
+    return json.dumps(text, ensure_ascii=False) if not text or set(text) & set(' "=\\') else text
