@@ -1,0 +1,113 @@
+"""Any raster file becomes an upright grey page, or is refused with a reason."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import stat
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.errors import BadPicture
+from daemon.intake.header import Header, read_header
+from daemon.intake.tone import to_grey
+from daemon.shapes import Grey, PageImage
+
+_MOST_BYTES_PER_PX = 16
+_MOST_OVERHEAD_BYTES = 64_000_000
+
+
+def decode(path: Path, *, max_megapixels: float = 100.0) -> PageImage:
+    """Reads a PNG, JPEG, TIFF (its first page), BMP, WebP or PNM file; its name and extension say nothing.
+
+    The size is read from the header and checked before anything is decoded. The page is upright as EXIF says, alpha
+    lies over white, every depth becomes 8 bits. Raises BadPicture when the file cannot be opened (links and what is
+    no regular file are not), is none of these, is greater than max_megapixels, damaged or cut short.
+    """
+    data = _read(path, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
+    header = _checked_header(path, data, max_megapixels)
+    grey = _upright(_grey(_pixels(path, data, header), header), header.turned)
+    height_px, width_px = grey.shape
+    return PageImage(
+        grey=grey,
+        to_given=np.eye(2, 3),
+        given_width_px=width_px,
+        given_height_px=height_px,
+        sha256=hashlib.sha256(data).hexdigest(),
+        px_per_mm=header.px_per_mm,
+    )
+
+
+def _read(path: Path, *, most_bytes: int) -> bytes:
+    """The file's bytes. O_NONBLOCK: opening a FIFO that nobody writes would wait for ever."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        with open(descriptor, "rb") as file:
+            status = os.fstat(descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                raise BadPicture(f"{path} is no regular file: drop the picture itself")
+            if status.st_size > most_bytes:
+                raise BadPicture(f"{path} has {status.st_size} bytes, at most {most_bytes} are read: make it smaller")
+            return file.read()
+    except OSError as error:
+        raise BadPicture(_why_unread(path, error)) from error
+
+
+def _why_unread(path: Path, error: OSError) -> str:
+    if error.errno == errno.ELOOP:
+        return f"{path} is a symbolic link, which is not followed: drop the picture itself"
+    return f"{path} cannot be read ({error.strerror}): check that it is there and mend its rights"
+
+
+def _checked_header(path: Path, data: bytes, max_megapixels: float) -> Header:
+    try:
+        header = read_header(data)
+    except ValueError as error:
+        raise BadPicture(f"{path} is no picture that can be read, {error}: save it anew as PNG") from error
+    if header.width_px * header.height_px > max_megapixels * 1e6:
+        raise BadPicture(
+            f"{path} is a {header.kind} of {header.width_px} x {header.height_px} px, at most {max_megapixels:g} "
+            "megapixels are read: make it smaller, or raise max_megapixels"
+        )
+    if not header.whole:
+        raise BadPicture(_damaged(path, header))
+    return header
+
+
+def _pixels(path: Path, data: bytes, header: Header) -> NDArray[Any]:
+    # JPEG holds its luma apart: decoding that alone takes a third of the memory.
+    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION if header.kind == "JPEG" else cv2.IMREAD_UNCHANGED
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
+    except cv2.error as error:
+        raise BadPicture(_damaged(path, header)) from error
+    if pixels is None:
+        raise BadPicture(_damaged(path, header))
+    return np.asarray(pixels)
+
+
+def _damaged(path: Path, header: Header) -> str:
+    return f"{path} is a {header.kind} that is damaged, cut short or of a rare form: copy it again, or save it as PNG"
+
+
+def _grey(pixels: NDArray[Any], header: Header) -> Grey:
+    # libtiff dims the colours of 8-bit TIFFs by their alpha and mends white-is-zero; it leaves deeper ones alone.
+    shallow_tiff = header.kind == "TIFF" and pixels.dtype == np.uint8
+    grey = to_grey(pixels, white=header.white, premultiplied=shallow_tiff)
+    return 255 - grey if header.inverted and not shallow_tiff else grey
+
+
+def _upright(grey: Grey, turned: int) -> Grey:
+    """Undo the camera's turn (EXIF 2.3, tag 274)."""
+    if turned >= 5:
+        grey = grey.T
+    if turned in (3, 4, 7, 8):
+        grey = grey[::-1]
+    if turned in (2, 3, 6, 7):
+        grey = grey[:, ::-1]
+    return np.ascontiguousarray(grey)
