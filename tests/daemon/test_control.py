@@ -1,0 +1,98 @@
+"""The control socket answers whoever speaks properly, whatever the others do."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from daemon.control import CONNECTIONS, LINE_BYTES, ControlServer, Order, give_order
+from daemon.errors import DiskTrouble, LinedrawError
+
+
+def obey(order: Order) -> str:
+    if order.order == "cancel":
+        raise LinedrawError(f"there is no job {order.job}: list them")
+    return f"done: {order.order}"
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Iterator[Path]:
+    server = ControlServer(tmp_path / "c.sock", obey)
+    thread = Thread(target=server.run)
+    thread.start()
+    yield tmp_path / "c.sock"
+    server.stop()
+    thread.join(10)
+    assert not (tmp_path / "c.sock").exists()
+
+
+def say(path: Path, data: bytes) -> bytes:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
+        connection.settimeout(10)
+        connection.connect(str(path))
+        try:
+            connection.sendall(data)
+            return connection.makefile("rb").readline()
+        except ConnectionError:
+            return b"closed"
+
+
+def test_an_order_is_obeyed_and_answered(path: Path) -> None:
+    assert give_order(path, Order(order="next")) == "done: next"
+
+
+def test_a_refusal_comes_back_as_its_sentence(path: Path) -> None:
+    with pytest.raises(LinedrawError, match="there is no job 7: list them"):
+        give_order(path, Order(order="cancel", job="7"))
+
+
+@pytest.mark.parametrize(
+    "garbage", [b"\n", b"nonsense\n", b'{"order": "explode"}\n', b'{"order": "next", "x": 1}\n', b"\xff\xfe\n", b"[]\n"]
+)
+def test_garbage_is_refused_and_the_next_order_is_obeyed(path: Path, garbage: bytes) -> None:
+    assert b'"ok":false' in say(path, garbage)
+    assert give_order(path, Order(order="ping")) == "done: ping"
+
+
+def test_an_endless_line_is_cut_off(path: Path) -> None:
+    said = say(path, b"x" * (LINE_BYTES * 200))
+    assert said == b"closed" or b"4096 bytes at most" in said
+    assert give_order(path, Order(order="ping")) == "done: ping"
+
+
+def test_those_who_say_nothing_keep_nobody_out(path: Path) -> None:
+    idle = []
+    for _ in range(3 * CONNECTIONS):
+        connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        connection.connect(str(path))
+        idle.append(connection)
+    assert give_order(path, Order(order="ping")) == "done: ping"
+    for connection in idle:
+        connection.close()
+
+
+def test_an_order_in_pieces_is_obeyed(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
+        connection.settimeout(10)
+        connection.connect(str(path))
+        for byte in b'{"order": "ping"}\n':
+            connection.sendall(bytes([byte]))
+        assert b"done: ping" in connection.makefile("rb").readline()
+
+
+def test_only_the_owner_and_the_group_may_give_orders(path: Path) -> None:
+    assert path.stat().st_mode & 0o777 == 0o660
+
+
+def test_without_a_daemon_the_order_fails_with_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(LinedrawError, match=r"no daemon answers at .*--state-dir"):
+        give_order(tmp_path / "none.sock", Order(order="stop"))
+
+
+def test_a_folder_whose_name_is_too_long_for_a_socket_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(DiskTrouble, match="shorten the state folder"):
+        ControlServer(tmp_path / ("x" * 120), obey)
