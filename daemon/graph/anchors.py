@@ -39,8 +39,7 @@ class Nearest:
 def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, width_px: float) -> Anchored:
     """Give every junction, end and ring of a skeleton a vertex: the corner nearby, else one of its own.
 
-    corners: (C, 2) in px, no two on one pixel. shape: of the page. width_px: of the line. Corners that own no pixel of
-    the skeleton are left out. A corner answers for junctions and ends within 1.5 line widths (3 px at least): thinning
+    corners: (C, 2) in px, no two on one pixel. shape: of the page. width_px: of the line. A corner answers for junctions and ends within 1.5 line widths (3 px at least): thinning
     moves a junction by half a width, and one crossing becomes two.
     """
     reach_px = max(3.0, 1.5 * width_px)
@@ -121,8 +120,8 @@ def _grouped(points: Points, apart_px: float) -> Indices:
 
 
 def _compact(vertices: Points, owners: Indices, corners: int) -> Anchored:
-    """Leave out vertices that own nothing."""
-    kept = np.zeros(len(vertices), bool)
+    """Leave out strays that own nothing."""
+    kept = np.arange(len(vertices)) < corners
     kept[owners[owners >= 0]] = True
     number = np.cumsum(kept) - 1
-    return Anchored(vertices[kept], np.where(owners >= 0, number[owners], -1), int(kept[:corners].sum()))
+    return Anchored(vertices[kept], np.where(owners >= 0, number[owners], -1), corners)

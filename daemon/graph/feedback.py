@@ -1,8 +1,7 @@
-"""The threshold of each pair of vertices, adapted by what is missing from the rendering and what is too much (Eq. 3)."""
+"""The threshold of each pair of vertices, adapted by what the rendering lacks and what it has too much (Eq. 3)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -31,9 +30,6 @@ class Adaptation:
     rounds: int = 10
 
 
-Selection = Callable[[NDArray[np.bool_]], NDArray[np.bool_]]
-
-
 def select(
     vertices: Points,
     pairs: Indices,
@@ -42,22 +38,20 @@ def select(
     adaptation: Adaptation,
     *,
     width_px: float,
-    refine: Selection,
 ) -> NDArray[np.bool_]:
     """Which pairs are edges: eta above a threshold of their own, which feedback adapts (Eqs. 1 and 3).
 
-    pairs: (P, 2) indices of vertices. eta: (P,). ink: bool (H, W). width_px: of the rendered line. refine: what further
-    rules keep of a selection. Returns (P,) bool. Stops early when a round changes no decision that a later one could
-    build on: no blob is left or none has a pair inside.
+    pairs: (P, 2) indices of vertices. eta: (P,). ink: bool (H, W). width_px: of the rendered line. Returns (P,) bool.
+    Stops early when no blob has a pair inside, for then no later round can change a decision.
     """
     tau = np.full(len(pairs), adaptation.tau0)
-    chosen = refine(eta > tau)
+    chosen = eta > tau
     for _ in range(adaptation.rounds):
         delta = _deltas(vertices, pairs, rendering(vertices, pairs[chosen], ink.shape, width_px=width_px), ink)
         if not delta.any():
             break
         tau = tau * (1 + adaptation.rate * delta)
-        chosen = refine(eta > tau)
+        chosen = eta > tau
     return chosen
 
 

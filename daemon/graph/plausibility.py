@@ -79,20 +79,37 @@ def plausibilities(lines: Map, starts: Points, ends: Points, *, width_px: float,
     return mean_along(samples, strip / len(across))
 
 
-def pairs_on_ink(vertices: Points, ink: Mask) -> Indices:
-    """All pairs of vertices that have ink at seven points between them, (P, 2), first index lower.
+def pairs_on_ink(vertices: Points, ink: Mask, *, within_px: float = np.inf) -> Indices:
+    """Pairs of vertices at most `within_px` apart that have ink at seven points between them, (P, 2), lower first.
 
-    ink: bool (H, W). Each point rules out most of the pairs that the one before it left, so what costs is the first:
-    time grows with the square of the number of vertices, memory does not.
+    ink: bool (H, W). Vertices are compared with those in a strip of the page alone; each of the seven points rules out
+    most of the pairs that the one before it left.
     """
     wide = np.asarray(cv2.dilate(ink.astype(np.float32), np.ones((3, 3), np.uint8)), np.float32)
+    order = np.argsort(vertices[:, 1], kind="stable")
+    height = vertices[order, 1]
+    past = np.searchsorted(height, height + within_px, side="right")
     found = [np.empty((0, 2), np.intp)]
-    rows = max(1, _PAIRS_AT_ONCE // max(1, len(vertices)))
-    for top in range(0, len(vertices), rows):
-        pairs = np.argwhere(np.arange(top, min(top + rows, len(vertices)))[:, None] < np.arange(len(vertices)))
-        pairs[:, 0] += top
-        for share in _STAGES:
-            p, q = vertices[pairs[:, 0]], vertices[pairs[:, 1]]
-            pairs = pairs[values_at(wide, p + share * (q - p)) > 0]
-        found.append(pairs)
-    return np.concatenate(found)
+    first = 0
+    while first < len(order):
+        counts = past[first:] - np.arange(first, len(order))
+        last = first + max(1, int(np.searchsorted(np.cumsum(counts), _PAIRS_AT_ONCE, side="right")))
+        p = np.repeat(np.arange(first, last), counts[: last - first])
+        q = (
+            np.arange(len(p))
+            - np.repeat(np.cumsum(counts[: last - first]) - counts[: last - first], counts[: last - first])
+            + p
+        )
+        found.append(_on_ink(order[p], order[q], vertices, wide, within_px))
+        first = last
+    return np.sort(np.concatenate(found), axis=1)
+
+
+def _on_ink(p: Indices, q: Indices, vertices: Points, wide: Map, within_px: float) -> Indices:
+    """Those of the pairs p-q that are near enough and have ink between them, (P, 2)."""
+    kept = (p != q) & (np.abs(vertices[p, 0] - vertices[q, 0]) <= within_px)
+    p, q = p[kept], q[kept]
+    for share in _STAGES:
+        kept = values_at(wide, vertices[p] + share * (vertices[q] - vertices[p])) > 0
+        p, q = p[kept], q[kept]
+    return np.stack([p, q], axis=1)

@@ -39,12 +39,12 @@ def inked(ink: Mask, samples: Samples) -> Floats:
     return np.asarray(np.maximum.reduce(sides))
 
 
-def suppressed(corners: Points, pairs: Indices, plausible: NDArray[np.bool_], near: Nearest) -> NDArray[np.bool_]:
+def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -> NDArray[np.bool_]:
     """Which pairs pass by a corner that they should end in (rule *suppression*).
 
-    p-r is refused when a corner q lies within 3 px of the segment and p-q and q-r are plausible: every crossing is a
-    corner, so no true edge passes through one. corners: (C, 2) in px; pairs: (P, 2) indices of corners, lower first;
-    plausible: (P,); near: the nearest corner of each pixel.
+    p-r is refused when a corner q lies within 3 px of the segment and p-q and q-r are known to be joined: every
+    crossing is a corner, so no true edge passes through one. corners: (C, 2) in px; pairs, known: (P, 2) and (K, 2)
+    indices of corners, lower first; near: the nearest corner of each pixel.
     """
     samples = sampled(corners[pairs[:, 0]], corners[pairs[:, 1]], trim_px=0.0)
     x, y = np.rint(samples.points).astype(np.intp).T
@@ -53,8 +53,8 @@ def suppressed(corners: Points, pairs: Indices, plausible: NDArray[np.bool_], ne
     hit = (near.distance_px[y, x] <= _NEAR_PX) & (between != p) & (between != r)
     p, q, r, segment = p[hit], between[hit], r[hit], samples.segment[hit]
     ahead = _is_between(corners, p, q, r)
-    known = _keys(pairs[plausible], len(corners))
-    joined = _known(p, q, known, corners) & _known(q, r, known, corners) & ahead
+    keys = np.sort(known[:, 0] * len(corners) + known[:, 1])
+    joined = _known(p, q, keys, corners) & _known(q, r, keys, corners) & ahead
     refused = np.zeros(len(pairs), bool)
     refused[segment[joined]] = True
     return refused
@@ -94,10 +94,6 @@ def _is_between(corners: Points, p: Indices, q: Indices, r: Indices) -> NDArray[
     along = corners[r] - corners[p]
     share = ((corners[q] - corners[p]) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-9)
     return np.asarray((share > 0) & (share < 1))
-
-
-def _keys(pairs: Indices, count: int) -> Indices:
-    return np.sort(pairs.min(axis=1) * count + pairs.max(axis=1))
 
 
 def _known(a: Indices, b: Indices, known: Indices, corners: Points) -> NDArray[np.bool_]:

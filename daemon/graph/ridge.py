@@ -15,8 +15,10 @@ from daemon.shapes import Map, Points
 _STEP_PX = 0.5
 _INKED = 0.25
 """Share of full ink above which a profile still belongs to the line."""
-_FIT_FROM_PX, _FIT_TO_PX = 1.5, 9.0
+_FIT_FROM_PX, _FIT_TO_PX = 1.5, 6.0
 """Stretch of an edge beyond the junction's own ink that says where the edge enters its vertex."""
+_PASSES = 4
+_STRAIGHT_PX = 0.07
 _HOLD = 0.05
 """Weight with which a vertex holds its place against the lines that meet in it."""
 
@@ -41,7 +43,7 @@ def onto_ridge(
     the centroid of the ink across the edge; where other lines run into the profile it follows its neighbours. A vertex
     moves to where the lines that enter it meet (least squares), at most half a line width or a pixel.
     """
-    bundle = _bundle(polylines)
+    bundle = _smoothed(_bundle(polylines))
     for _ in range(2):
         offsets, valid, normals = _offsets(bundle, ink, width_px)
         bundle = _shifted(bundle, normals, _spread(offsets, valid, bundle))
@@ -63,6 +65,23 @@ def _resampled(polyline: Points) -> Points:
     along = np.concatenate([[0.0], np.cumsum(steps)])
     at = np.linspace(0.0, along[-1], max(2, round(along[-1])) + 1)
     return np.stack([np.interp(at, along, polyline[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _smoothed(bundle: _Bundle) -> _Bundle:
+    """The steps of the pixel raster taken out of the polylines; ends stay."""
+    points = bundle.points
+    for _ in range(_PASSES):
+        points = _blurred(points, bundle)
+        points[bundle.first], points[bundle.last] = bundle.points[bundle.first], bundle.points[bundle.last]
+    return _Bundle(points, bundle.first, bundle.last, bundle.edge)
+
+
+def _blurred(values: Floats, bundle: _Bundle) -> Floats:
+    """One pass of the binomial filter 1 2 1 along each edge."""
+    index = np.arange(len(values))
+    ahead = np.minimum(index + 1, bundle.last[bundle.edge])
+    behind = np.maximum(index - 1, bundle.first[bundle.edge])
+    return np.asarray(0.25 * values[behind] + 0.5 * values + 0.25 * values[ahead])
 
 
 def _offsets(bundle: _Bundle, ink: Map, width_px: float) -> tuple[Floats, NDArray[np.bool_], Points]:
@@ -135,10 +154,8 @@ def _spread(offsets: Floats, valid: NDArray[np.bool_], bundle: _Bundle) -> Float
     y = np.concatenate([offsets[known], offsets[known[begins]], offsets[known[ends]]])
     order = np.argsort(x, kind="stable")
     filled = np.where(counts[bundle.edge] > 0, np.interp(index, x[order], y[order]), 0.0)
-    ahead = np.minimum(np.arange(len(offsets)) + 1, bundle.last[bundle.edge])
-    behind = np.maximum(np.arange(len(offsets)) - 1, bundle.first[bundle.edge])
     for _ in range(2):
-        filled = 0.25 * filled[behind] + 0.5 * filled + 0.25 * filled[ahead]
+        filled = _blurred(filled, bundle)
     return np.asarray(filled)
 
 
@@ -157,8 +174,9 @@ def _meeting_points(
     right = _HOLD * vertices
     for side, distance in ((0, from_start), (1, from_end)):
         used = valid & (distance >= lead) & (distance <= lead + _FIT_TO_PX)
-        means, normals, enough = _fits(bundle.points[used], bundle.edge[used], len(bundle.first))
-        outer = normals[:, :, None] * normals[:, None, :]
+        means, normals, trust = _fits(bundle.points[used], bundle.edge[used], len(bundle.first))
+        enough = trust > 0
+        outer = trust[:, None, None] * normals[:, :, None] * normals[:, None, :]
         at = ends[enough, side]
         np.add.at(normal_matrix, at, outer[enough])
         np.add.at(right, at, np.einsum("eij,ej->ei", outer, means)[enough])
@@ -169,15 +187,21 @@ def _meeting_points(
     return np.asarray(vertices + step * np.minimum(1.0, most / np.maximum(length, 1e-9))[:, None])
 
 
-def _fits(points: Points, edge: Indices, count: int) -> tuple[Points, Points, NDArray[np.bool_]]:
-    """The line through each edge's points: its mean, its unit normal, and whether there were enough points."""
+def _fits(points: Points, edge: Indices, count: int) -> tuple[Points, Points, Floats]:
+    """The line through each edge's points: its mean, its unit normal, and how far it is to be trusted, 0..1.
+
+    A line that is not straight says little about where it enters its vertex, and one of few points nothing.
+    """
     total = np.bincount(edge, minlength=count)
     safe = np.maximum(total, 1)[:, None]
     means = np.stack([np.bincount(edge, points[:, axis], count) for axis in (0, 1)], axis=1) / safe
     x, y = (points - means[edge]).T
     xx, yy, xy = (np.bincount(edge, product, count) for product in (x * x, y * y, x * y))
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
-    return means, np.stack([-np.sin(angle), np.cos(angle)], axis=1), total >= 4
+    least = (xx + yy) / 2 - np.hypot((xx - yy) / 2, xy)
+    variance = np.maximum(least, 0.0) / np.maximum(total, 1)
+    trust = np.where(total >= 4, 1.0 / (1.0 + variance / _STRAIGHT_PX**2) ** 2, 0.0)
+    return means, np.stack([-np.sin(angle), np.cos(angle)], axis=1), trust
 
 
 def _pinned(bundle: _Bundle, valid: NDArray[np.bool_], ends: Indices, vertices: Points) -> _Bundle:

@@ -16,6 +16,7 @@ from daemon.shapes import Points, Segmentation
 BETA_PX = 1.8
 """Width of the strip of Eq. 2 (Raghav et al. 2020, Sec. 5.3, adaptive)."""
 _HOPS = 3
+_NEIGHBOURS = 100
 _BEND_PX = 1.2
 """A chain that leaves its chord by more than this is a curve."""
 
@@ -29,7 +30,7 @@ def equations_alone(
     """
     pairs = pairs_on_ink(vertices, ink)
     eta = plausibilities(segmentation.lines, *_ends(vertices, pairs), width_px=BETA_PX)
-    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px, refine=lambda selection: selection)
+    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px)
     return pairs[chosen], eta[chosen]
 
 
@@ -51,20 +52,17 @@ def straight_edges(
     other edges cover it.
     """
     vertices = anchored.vertices[: anchored.corners]
-    pairs, bends = _candidates(anchored, skeleton, chains)
+    pairs, bends = _candidates(anchored, skeleton, chains, ink)
     starts, ends = _ends(vertices, pairs)
     response = segmentation.lines + segmentation.corners
     eta = plausibilities(response, starts, ends, width_px=BETA_PX, trim_px=TRIM_PX)
-    possible = without_gap(ink, starts, ends) & (bends <= _BEND_PX)
+    lowest = adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds
+    sound = (eta > lowest) & (bends <= _BEND_PX) & without_gap(ink, starts, ends)
+    pairs, bends, eta, sound = (values[sound | (bends >= 0)] for values in (pairs, bends, eta, sound))
     near = nearest(vertices, (ink.shape[0], ink.shape[1]))
-
-    def refine(plausible: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        sound = plausible & possible
-        kept = sound.copy()
-        kept[sound] = ~suppressed(vertices, pairs[sound], np.ones(int(sound.sum()), bool), near)
-        return kept
-
-    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px, refine=refine)
+    allowed = sound & ~suppressed(vertices, pairs, pairs[(eta > adaptation.tau0) | (bends >= 0)], near)
+    pairs, bends, eta = pairs[allowed], bends[allowed], eta[allowed]
+    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px)
     pairs, bends, eta = pairs[chosen], bends[chosen], eta[chosen]
     unbacked = np.flatnonzero(bends < 0)
     order = unbacked[np.argsort(eta[unbacked], kind="stable")]
@@ -84,7 +82,7 @@ def bend_px(skeleton: Skeleton, chain: Chain, vertices: Points) -> float:
     return float(across.max())
 
 
-def _candidates(anchored: Anchored, skeleton: Skeleton, chains: list[Chain]) -> tuple[Indices, Floats]:
+def _candidates(anchored: Anchored, skeleton: Skeleton, chains: list[Chain], ink: Mask) -> tuple[Indices, Floats]:
     """Pairs of corners (P, 2), lower first, that few chains join, and the least bend of a chain that joins them.
 
     The bend is -1 where no chain joins the two.
@@ -97,9 +95,16 @@ def _candidates(anchored: Anchored, skeleton: Skeleton, chains: list[Chain]) -> 
             bends[pair] = min(bends.get(pair, np.inf), bend_px(skeleton, chain, anchored.vertices))
             neighbours[chain.start].add(chain.end)
             neighbours[chain.end].add(chain.start)
-    pairs = [(p, q) for p in range(anchored.corners) for q in _within(p, neighbours) if p < q < anchored.corners]
-    found = np.array(pairs, np.intp).reshape(-1, 2)
-    return found, np.array([bends.get(pair, -1.0) for pair in pairs])
+    corners = anchored.corners
+    linked = [(p, q) for p in range(corners) for q in _within(p, neighbours) if p < q < corners]
+    near_by = pairs_on_ink(anchored.vertices[:corners], ink, within_px=_reach_px(corners, ink))
+    pairs = np.unique(np.concatenate([np.array(linked, np.intp).reshape(-1, 2), near_by]), axis=0)
+    return pairs, np.array([bends.get((p, q), -1.0) for p, q in pairs.tolist()])
+
+
+def _reach_px(corners: int, ink: Mask) -> float:
+    """A distance within which a corner has about a hundred others, were they spread evenly over the page."""
+    return float(np.sqrt(_NEIGHBOURS * ink.size / (np.pi * max(1, corners))))
 
 
 def _within(vertex: int, neighbours: list[set[int]]) -> list[int]:
