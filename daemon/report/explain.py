@@ -49,13 +49,15 @@ def _graph(page: PageImage, graph: LineGraph, scale: float) -> tuple[_Legend, Pi
         canvas.line(tile, _on_tile(edge.polyline, scale), canvas.GREEN if len(edge.polyline) <= 2 else canvas.BLUE, 3)
     for vertex in _on_tile(graph.vertices, scale):
         canvas.dot(tile, vertex, 4.0, canvas.ORANGE, canvas.PAPER)
-    straight = sum(len(edge.polyline) <= 2 for edge in graph.edges)
-    legend = [
-        (canvas.counted(len(graph.vertices), "vertex", "vertices"), canvas.ORANGE),
-        (canvas.counted(straight, "straight edge", "straight edges"), canvas.GREEN),
-        (canvas.counted(len(graph.edges) - straight, "bent edge", "bent edges"), canvas.BLUE),
-    ]
-    return legend, tile
+    return [(canvas.counted(len(graph.vertices), "vertex", "vertices"), canvas.ORANGE), *_kinds(graph)], tile
+
+
+def _kinds(graph: LineGraph) -> _Legend:
+    sizes = [len(edge.polyline) for edge in graph.edges]
+    dots, straight = sizes.count(1), sizes.count(2)
+    kinds = [(canvas.counted(straight, "straight edge", "straight edges"), canvas.GREEN)]
+    kinds.append((canvas.counted(len(sizes) - straight - dots, "bent edge", "bent edges"), canvas.BLUE))
+    return kinds + ([(canvas.counted(dots, "dot", "dots"), canvas.GREEN)] if dots else [])
 
 
 def _strokes(page: PageImage, drawing: Drawing, scale: float) -> tuple[_Legend, Picture]:

@@ -1,0 +1,93 @@
+"""The demo reads the daemon's own files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from daemon.config import Options, Settings, load_settings
+from daemon.jobs.journal import Journal
+from daemon.jobs.states import State
+from daemon.report.fidelity import Fidelity
+from daemon.report.report import executed_report, planned_report, to_json
+from daemon.shapes import LineGraph, PageImage, Stroke, Toolpath
+from tests.demo import OVER, Seen, drop, line_of, row_of, seen_jobs
+
+LINE = np.array([[10.0, 20.0], [110.0, 20.0]])
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return load_settings(Options(device="sim", state_dir=tmp_path), environment={"HOME": str(tmp_path)})
+
+
+def drawn_job(settings: Settings) -> Seen:
+    """A job's folder as the daemon leaves it: a page of 128 x 64 px, half a millimetre a pixel in the usual box."""
+    folder = settings.paths.jobs / "000001-line"
+    folder.mkdir(parents=True)
+    grey = np.full((64, 128), 255, np.uint8)
+    cv2.imwrite(str(folder / "source.png"), grey)
+    (folder / "strokes.json").write_text(
+        json.dumps({"width_px": 128, "height_px": 64, "px_per_mm": None, "strokes": [LINE.tolist()]})
+    )
+    # The box is 64 mm wide at (25, 25); the page fills its middle, its upper edge 16 mm below the box's.
+    ink_mm = [[25 + 0.5 * 10.5, 89 - 16 - 0.5 * 20.5], [25 + 0.5 * 110.5, 89 - 16 - 0.5 * 20.5]]
+    (folder / "ink.json").write_text(json.dumps({"strokes": [ink_mm]}))
+    page = PageImage(grey, np.eye(2, 3), 128, 64, "")
+    toolpath = Toolpath((Stroke(LINE),), np.eye(2, 3))
+    figures = Fidelity(1.0, 0.9, 0.947, 0.8)
+    planned = planned_report(
+        page, LineGraph(LINE, ()), toolpath, figures, line_width_px=2.0, estimated_s=9.0, stage_s={}, peak_memory_mb=1.0
+    )
+    (folder / "report.json").write_text(to_json(executed_report(planned, figures, real_s=83.0)))
+    return Seen(folder.name, "line.png", State.DONE, "")
+
+
+def test_a_job_is_over_when_nothing_but_cancelling_can_follow() -> None:
+    assert OVER == {State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED}
+
+
+def test_jobs_are_read_while_the_journal_is_open(tmp_path: Path) -> None:
+    path = tmp_path / "journal.sqlite"
+    assert seen_jobs(path) == []
+    journal = Journal(path)
+    journal.add("000001-a", "a.png")
+    journal.add("000002-b", "b.png")
+    journal.step("000001-a", State.FAILED, "no line on it")
+    assert seen_jobs(path) == [
+        Seen("000001-a", "a.png", State.FAILED, "no line on it"),
+        Seen("000002-b", "b.png", State.QUEUED, "b.png"),
+    ]
+    journal.close()
+
+
+def test_ink_comes_back_to_the_pixels_it_was_planned_from(settings: Settings) -> None:
+    row = row_of(settings, drawn_job(settings))
+    np.testing.assert_allclose(row.drawn[0], row.understood[0], atol=1e-9)
+    assert (row.f1, row.seconds, row.line_width_px) == (0.947, 83.0, 2.0)
+
+
+def test_the_line_of_a_job_tells_its_f1_and_its_time(settings: Settings) -> None:
+    line = line_of(settings, drawn_job(settings))
+    assert "executed f1 0.947" in line
+    assert "1 min 23 s" in line
+
+
+def test_a_picture_that_failed_still_has_its_row(settings: Settings) -> None:
+    folder = settings.paths.jobs / "000002-text"
+    folder.mkdir(parents=True)
+    (folder / "source.png").write_text("no picture")
+    row = row_of(settings, Seen(folder.name, "text.png", State.FAILED, "text.png is no picture: give another"))
+    assert row.trouble == "text.png is no picture: give another"
+    assert row.given.size > 0
+
+
+def test_a_picture_is_dropped_whole(tmp_path: Path) -> None:
+    picture = tmp_path / "a.png"
+    picture.write_bytes(b"x" * 1000)
+    drop([picture], tmp_path / "inbox")
+    assert {path.name: path.stat().st_size for path in (tmp_path / "inbox").iterdir()} == {"a.png": 1000}
