@@ -16,6 +16,8 @@ TRIM_PX = 2.5
 """Corners are discs of this radius: so much of an edge at either end lies in the corners channel, not in the lines'."""
 _GAP_PX = 2.0
 _GAP_SHARE = 0.06
+_EDGE_PX = 0.6
+_TWICE_SHARE = 0.8
 _NEAR_PX = 3.0
 _SHIFT = 4
 
@@ -25,18 +27,29 @@ def without_gap(ink: Mask, starts: Points, ends: Points) -> NDArray[np.bool_]:
 
     ink: bool (H, W). starts, ends: (P, 2) in px. Half a pixel to the side still counts as under it.
     """
-    samples = sampled(starts, ends)
-    bare = mean_along(samples, 1.0 - inked(ink, samples))
+    bare = 1.0 - _strip(ink, starts, ends, 0.5).max(axis=0)
+    return _little(bare, sampled(starts, ends), starts, ends)
+
+
+def filled(ink: Mask, starts: Points, ends: Points, *, width_px: float) -> NDArray[np.bool_]:
+    """Which segments lie in the middle of a line's width of ink: the rule *gap* for the strip's edges too.
+
+    width_px: of the line; its outer half pixel on either side is grey and does not count.
+    """
+    bare = 1.0 - _strip(ink, starts, ends, max(0.0, width_px / 2 - _EDGE_PX)).min(axis=0)
+    return _little(bare, sampled(starts, ends), starts, ends)
+
+
+def _strip(ink: Mask, starts: Points, ends: Points, aside_px: float) -> Floats:
+    """Whether there is ink at each sample of each segment, left of it, on it and right of it: (3, S) of 0 and 1."""
+    samples, image = sampled(starts, ends), ink.astype(np.float32)
+    aside = aside_px * samples.normals[samples.segment]
+    return np.stack([values_at(image, samples.points + side * aside) for side in (-1.0, 0.0, 1.0)])
+
+
+def _little(bare: Floats, samples: Samples, starts: Points, ends: Points) -> NDArray[np.bool_]:
     lengths = np.hypot(*(ends - starts).T)
-    return np.asarray(bare * (lengths + 1) <= np.maximum(_GAP_PX, _GAP_SHARE * lengths))
-
-
-def inked(ink: Mask, samples: Samples) -> Floats:
-    """1 where a sample, or a point half a pixel beside its segment, lies on ink, else 0."""
-    image = ink.astype(np.float32)
-    aside = 0.5 * samples.normals[samples.segment]
-    sides = [values_at(image, samples.points + offset * aside) for offset in (-1.0, 0.0, 1.0)]
-    return np.asarray(np.maximum.reduce(sides))
+    return np.asarray(mean_along(samples, bare) * (lengths + 1) <= np.maximum(_GAP_PX, _GAP_SHARE * lengths))
 
 
 def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -> NDArray[np.bool_]:
@@ -66,25 +79,27 @@ def redundant(ink: Mask, starts: Points, ends: Points, order: Indices) -> NDArra
     starts, ends: (P, 2) in px. order: indices of the segments that may be dropped, least trusted first.
     """
     cover = np.zeros(ink.shape, np.int16)
-    masks = [_footprint(start, end, ink.shape) for start, end in zip(starts, ends, strict=True)]
-    for ys, xs in masks:
+    wide = [_footprint(start, end, ink.shape, 3) for start, end in zip(starts, ends, strict=True)]
+    for ys, xs in wide:
         cover[ys, xs] += 1
     dropped = np.zeros(len(starts), bool)
     for index in order.tolist():
-        ys, xs = masks[index]
-        if (cover[ys, xs] >= 2).mean() >= 0.8:
+        ys, xs = _footprint(starts[index], ends[index], ink.shape, 1)
+        if (cover[ys, xs] >= 2).mean() >= _TWICE_SHARE:
             dropped[index] = True
-            cover[ys, xs] -= 1
+            cover[wide[index]] -= 1
     return dropped
 
 
-def _footprint(start: NDArray[np.float64], end: NDArray[np.float64], shape: tuple[int, ...]) -> tuple[Indices, Indices]:
-    """The pixels within about a pixel of a segment, each once."""
+def _footprint(
+    start: NDArray[np.float64], end: NDArray[np.float64], shape: tuple[int, ...], wide: int
+) -> tuple[Indices, Indices]:
+    """The pixels (y, x) of a segment `wide` px wide, each once."""
     low = np.maximum(np.floor(np.minimum(start, end)).astype(int) - 2, 0)
     size = np.ceil(np.maximum(start, end)).astype(int) + 3 - low
     canvas = np.zeros((size[1], size[0]), np.uint8)
     ends = np.rint((np.stack([start, end]) - low) * (1 << _SHIFT)).astype(np.int32)
-    cv2.polylines(canvas, [ends], False, 1, 3, cv2.LINE_8, _SHIFT)
+    cv2.polylines(canvas, [ends], False, 1, wide, cv2.LINE_8, _SHIFT)
     ys, xs = np.nonzero(canvas[: shape[0] - low[1], : shape[1] - low[0]])
     return ys + low[1], xs + low[0]
 

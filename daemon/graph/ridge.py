@@ -18,7 +18,8 @@ _INKED = 0.25
 _FIT_FROM_PX, _FIT_TO_PX = 1.5, 6.0
 """Stretch of an edge beyond the junction's own ink that says where the edge enters its vertex."""
 _PASSES = 4
-_STRAIGHT_PX = 0.07
+_STRAIGHT_PX = 0.05
+_MOVE_PX, _JUNCTION_MOVE_PX = 0.8, 2.5
 _HOLD = 0.05
 """Weight with which a vertex holds its place against the lines that meet in it."""
 
@@ -183,7 +184,8 @@ def _meeting_points(
     moved = np.linalg.solve(normal_matrix, right[:, :, None])[:, :, 0]
     step = moved - vertices
     length = np.hypot(*step.T)
-    most = max(1.0, width_px / 2)
+    degree = np.bincount(ends.ravel(), minlength=len(vertices))
+    most = np.where(degree >= 3, _JUNCTION_MOVE_PX, _MOVE_PX)
     return np.asarray(vertices + step * np.minimum(1.0, most / np.maximum(length, 1e-9))[:, None])
 
 

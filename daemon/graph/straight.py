@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from daemon.graph.anchors import Anchored, nearest
 from daemon.graph.feedback import Adaptation, select
 from daemon.graph.plausibility import Floats, pairs_on_ink, plausibilities
-from daemon.graph.repairs import TRIM_PX, redundant, suppressed, without_gap
+from daemon.graph.repairs import TRIM_PX, filled, redundant, suppressed, without_gap
 from daemon.graph.skeleton import Chain, Indices, Skeleton
 from daemon.ink import Mask
 from daemon.shapes import Points, Segmentation
@@ -58,6 +58,7 @@ def straight_edges(
     eta = plausibilities(response, starts, ends, width_px=BETA_PX, trim_px=TRIM_PX)
     lowest = adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds
     sound = (eta > lowest) & (bends <= _BEND_PX) & without_gap(ink, starts, ends)
+    sound &= (bends >= 0) | filled(ink, starts, ends, width_px=width_px)
     pairs, bends, eta, sound = (values[sound | (bends >= 0)] for values in (pairs, bends, eta, sound))
     near = nearest(vertices, (ink.shape[0], ink.shape[1]))
     allowed = sound & ~suppressed(vertices, pairs, pairs[(eta > adaptation.tau0) | (bends >= 0)], near)
