@@ -48,7 +48,7 @@ def drawn_job(settings: Settings) -> Seen:
 
 
 def test_a_job_is_over_when_nothing_but_cancelling_can_follow() -> None:
-    assert OVER == {State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED}
+    assert {State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED} == OVER
 
 
 def test_jobs_are_read_while_the_journal_is_open(tmp_path: Path) -> None:

@@ -1,0 +1,25 @@
+"""Every benchmark, one after the other: `python -m tests.benchmarks [stages] [streaming] [memory]`."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+# One thread, as on the board; the libraries look at this once, when they are imported.
+os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "ORT_DISABLE_TELEMETRY": "1"}
+
+
+def main() -> None:
+    from tests.benchmarks import memory, stages, streaming  # noqa: PLC0415
+
+    known = {"stages": stages.show, "streaming": streaming.show, "memory": memory.show}
+    wanted = sys.argv[1:] or list(known)
+    if unknown := set(wanted) - known.keys():
+        raise SystemExit(f"no benchmark is called {', '.join(sorted(unknown))}: choose from {', '.join(known)}")
+    for name in wanted:
+        known[name]()
+        print(flush=True)
+
+
+if __name__ == "__main__":
+    main()
