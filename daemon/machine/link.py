@@ -1,0 +1,137 @@
+"""The one loop that moves bytes and time between a session and a transport."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+
+from daemon.errors import MachineFault, NoMachine
+from daemon.machine.transport import Transport
+from firmware_protocol.errors import LocalProtocolError
+from firmware_protocol.session import Ended, Event, JobLine, NotReady, Ready, Session
+
+LIFT_WITHIN_S = 30.0
+"""For an interrupted job to slow down and lift its pen."""
+
+
+class Link:
+    """One session on one transport, driven by the thread that calls; only `stop` and `wake` come from others.
+
+    heard: is given every event, in order, in the calling thread; it must not call back.
+    A link whose job ended by a fault is over: close it and make a new one.
+    """
+
+    def __init__(self, transport: Transport, session: Session, *, heard: Callable[[Event], None]) -> None:
+        self._transport = transport
+        self._session = session
+        self._heard = heard
+        self._stop_asked = threading.Event()
+        self._woken = threading.Event()
+
+    def connect(self) -> Ready:
+        """Wait until the machine takes a job.
+
+        Raises NoMachine when what answers takes none, or `stop` was called; MachineFault when it is unplugged.
+        """
+        for event in self._events(until=None):
+            if isinstance(event, Ready):
+                return event
+            if isinstance(event, NotReady):
+                raise NoMachine(f"{self._transport.name}: {event.why}")
+            if event is None and self._stop_asked.is_set():
+                self._stop_asked.clear()
+                raise NoMachine(f"{self._transport.name}: stopped before the machine answered: start again")
+        raise AssertionError("without a time limit the events do not end")
+
+    def draw(self, lines: Sequence[JobLine]) -> Ended:
+        """Send a job and wait for its end, whatever it is; an unplugged machine is an end too.
+
+        A `stop` that was asked for before is obeyed at once. KeyboardInterrupt stops the job, waits until the pen is
+        up, and is raised again; a second one gives up waiting. Raises MachineFault when no job can be started.
+        """
+        try:
+            self._session.start(lines, self._transport.now())
+        except LocalProtocolError as fault:
+            raise MachineFault(f"{self._transport.name}: {fault}") from fault
+        try:
+            return self._until_ended(until=None)
+        except KeyboardInterrupt:
+            self._stop_asked.set()
+            self._until_ended(until=self._transport.now() + LIFT_WITHIN_S)
+            raise
+        finally:
+            self._stop_asked.clear()
+
+    def listen(self, until_s: float | None) -> None:
+        """Between jobs: wait until the transport's time `until_s` (None: for ever) or until `wake` or `stop`.
+
+        Raises MachineFault when the machine restarts, alarms, falls silent or is unplugged meanwhile.
+        """
+        for event in self._events(until=until_s):
+            if isinstance(event, NotReady):
+                raise MachineFault(f"{self._transport.name}: {event.why}")
+            if self._woken.is_set() or self._stop_asked.is_set():
+                break
+        self._woken.clear()
+        self._stop_asked.clear()
+
+    def wake(self) -> None:
+        """Make `listen` return. Callable from any thread."""
+        self._woken.set()
+        self._transport.wake()
+
+    def stop(self) -> None:
+        """End the drawing that is under way, pen up. Callable from any thread, returns at once."""
+        self._stop_asked.set()
+        self._transport.wake()
+
+    def close(self) -> None:
+        """Give the port back."""
+        self._transport.close()
+
+    def _until_ended(self, *, until: float | None) -> Ended:
+        try:
+            for event in self._events(until=until):
+                if isinstance(event, Ended):
+                    return event
+                if event is None and self._stop_asked.is_set():
+                    self._session.stop(self._transport.now())
+        except MachineFault:
+            return self._ended_by_unplugging()
+        raise MachineFault(f"{self._transport.name} did not lift the pen in time: look at the machine")
+
+    def _ended_by_unplugging(self) -> Ended:
+        for event in self._session.unplugged(self._transport.now()):
+            self._heard(event)
+            if isinstance(event, Ended):
+                return event
+        raise AssertionError("a job that runs has an end")
+
+    def _events(self, *, until: float | None) -> Iterator[Event | None]:
+        """Every event, and None before each wait, which is the moment to look at what other threads have asked for."""
+        data = b""
+        while True:
+            now = self._transport.now()
+            events = [*self._session.receive(data, now), *self._session.expire(now)]
+            fault = self._write(self._session.data_to_send(now))
+            for event in events:
+                self._heard(event)
+                yield event
+            if fault is not None:
+                raise fault
+            yield None
+            if until is not None and now >= until:
+                return
+            data = self._transport.read(self._wait_until(until))
+
+    def _write(self, data: bytes) -> MachineFault | None:
+        """The fault is raised later: what the machine has said before it was unplugged comes first."""
+        try:
+            self._transport.write(data)
+        except MachineFault as fault:
+            return fault
+        return None
+
+    def _wait_until(self, until: float | None) -> float | None:
+        times = [at for at in (until, self._session.deadline()) if at is not None]
+        return min(times, default=None)
