@@ -1,0 +1,22 @@
+"""A page is put right before it is read; what finds nothing to do changes nothing."""
+
+from __future__ import annotations
+
+from daemon.page.dark import turn_dark
+from daemon.page.light import flatten_light
+from daemon.page.line_width import fit_line_width
+from daemon.shapes import PageImage
+
+
+def prepare(page: PageImage) -> PageImage:
+    """Dark ink on light paper, evenly lit, with lines of the width that the network reads best.
+
+    page: upright, as `decode` gives it. Returns a page whose `to_given` leads back to the given picture and whose
+    `line_width_px` is known where the page holds ink.
+    """
+    return fit_line_width(even_out(page))
+
+
+def even_out(page: PageImage) -> PageImage:
+    """Dark ink on light, evenly lit paper, pixel for pixel the given picture: what a drawing is compared with."""
+    return flatten_light(turn_dark(page))
