@@ -42,6 +42,8 @@ class Desk:
     ) -> None:
         self.journal, self.folders, self.say, self.show = journal, folders, say, show
         self.ending = False
+        self.only = ""
+        """The one job that is worked on, where a person has asked for just that."""
         self.changes = 0
         """Counts what has changed, so that a change between a look and a `wait` is not slept over."""
         self._asks_for_sheets, self._ahead = asks_for_sheets, ahead
@@ -107,8 +109,8 @@ class Desk:
     def begin_planning(self) -> Job | None:
         """The next job for the worker, now in planning; None while enough is planned."""
         with self._changed:
-            queued = self.journal.jobs(State.QUEUED)
-            if self.ending or not queued or len(self.journal.jobs(*_READY)) >= self._ahead:
+            queued = self._worked_on(State.QUEUED)
+            if self.ending or not queued or len(self._worked_on(*_READY)) >= self._ahead:
                 return None
             self.step(queued[0].id, State.PLANNING)
             return queued[0]
@@ -126,7 +128,7 @@ class Desk:
     def begin_drawing(self) -> Job | None:
         """The next job for the machine, now in drawing; None while there is none or something holds it up."""
         with self._changed:
-            ready = self.journal.jobs(*_READY)
+            ready = self._worked_on(*_READY)
             if self.ending or self.held or not ready:
                 return None
             if self._asks_for_sheets and self.journal.sheet_used:
@@ -138,7 +140,7 @@ class Desk:
     def let_wait(self, words: str) -> None:
         """The planned jobs wait, and `words` say for what."""
         with self._changed:
-            for job in self.journal.jobs(State.PLANNED):
+            for job in self._worked_on(State.PLANNED):
                 self.step(job.id, State.WAITING, words)
             self.show(state="waiting", words=words)
 
@@ -200,6 +202,9 @@ class Desk:
         with self._changed:
             seen = self.changes if since is None else since
             self._changed.wait_for(lambda: self.ending or self.changes != seen, seconds)
+
+    def _worked_on(self, *states: State) -> list[Job]:
+        return [job for job in self.journal.jobs(*states) if self.only in ("", job.id)]
 
     def _show_queue(self) -> None:
         waiting = len(self.journal.jobs(*_READY))

@@ -79,6 +79,8 @@ class Drawing:
         self._desk, self._opened, self._load, self._measure, self._now = desk, opened, load, measure, now
         self._machine: OpenMachine | None = None
         self._progress: Progress | None = None
+        self.missing: NoMachine | MachineFault | None = None
+        """Why there is no machine to draw with; None when there is one, and before the first look."""
         self._told, self._retry_at_s = "", float("-inf")
 
     def turn(self) -> float:
@@ -112,12 +114,13 @@ class Drawing:
         except (NoMachine, MachineFault) as error:
             self._lost(error)
             return
-        self._told = ""
+        self.missing, self._told = None, ""
         self._desk.say("the machine is ready", port=self._machine.name, firmware=ready.firmware)
         self._desk.show(state="idle", words="", port=self._machine.name, firmware=ready.firmware)
 
     def _lost(self, error: NoMachine | MachineFault) -> None:
         self.close()
+        self.missing = error
         self._retry_at_s = self._now() + (NO_MACHINE_RETRY_S if isinstance(error, NoMachine) else FAULT_RETRY_S)
         self._desk.show(port="", firmware="")
         if str(error) != self._told:
@@ -149,7 +152,7 @@ class Drawing:
         self._desk.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
         ended = self._ended(job, program)
-        self._record(job, program, ended, seconds=round(self._machine.now() - begun_s, 1))
+        self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
         self._desk.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
 
     def _ended(self, job: Job, program: Program) -> Ended:
@@ -161,28 +164,30 @@ class Drawing:
         except MachineFault as error:
             return Ended(Verdict.UNPLUGGED, 0, program.strokes, False, False, str(error))
 
-    def _record(self, job: Job, program: Program, ended: Ended, *, seconds: float) -> None:
+    def _record(self, job: Job, program: Program, ended: Ended, *, real_s: float) -> None:
         assert self._machine is not None
         ink = self._machine.take_ink()
         if not (ended.verdict in _PORT_STAYS_OPEN and ended.position_known):
             self.close()
-        if ink is not None:
-            self._keep_ink(job, ink)
+        self._report(job, ink, real_s)
         cancelled = self._desk.is_cancelled(job.id) and ended.verdict is Verdict.STOPPED
         state = State.CANCELLED if cancelled else _STATES.get(ended.verdict, State.INTERRUPTED)
         if state is State.DONE:
             self._desk.show(state="idle", words="")
         elif not (cancelled or self._desk.ending or self._desk.held):
             self._desk.hold(ended.why)
-        self._desk.step_at_last(job.id, state, _words(ended, program.strokes), seconds=seconds)
+        self._desk.step_at_last(job.id, state, _words(ended, program.strokes), real_s=real_s)
 
-    def _keep_ink(self, job: Job, ink: InkMm) -> None:
+    def _report(self, job: Job, ink: InkMm | None, real_s: float) -> None:
+        """The seconds into report.json, the ink beside it, and have it measured. A job does not fail for its report."""
         folder = self._desk.folders.path(job.id)
         try:
-            write_durably(folder / "ink.json", json.dumps({"strokes": ink}).encode())
-            self._measure(folder)
-        except LinedrawError as error:
-            self._desk.trouble(str(error), job=job.id)
+            _add_to_report(folder / "report.json", real_s)
+            if ink is not None:
+                write_durably(folder / "ink.json", json.dumps({"strokes": ink, "real_s": real_s}).encode())
+                self._measure(folder)
+        except (LinedrawError, ValueError) as error:
+            self._desk.trouble(f"the report is not complete: {error}", job=job.id)
 
     def _hear(self, event: Event) -> None:
         if isinstance(event, Accepted) and self._progress:
@@ -206,6 +211,12 @@ class Progress:
             percent=round(100 * (done_s / all_s if all_s else (line + 1) / self._lines), 1),
             seconds_left=round(all_s - done_s, 1),
         )
+
+
+def _add_to_report(path: Path, real_s: float) -> None:
+    if path.exists():
+        report = json.loads(path.read_text(encoding="utf-8")) | {"real_s": real_s}
+        write_durably(path, (json.dumps(report, indent=2) + "\n").encode())
 
 
 def _words(ended: Ended, strokes: int) -> str:

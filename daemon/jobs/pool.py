@@ -59,11 +59,7 @@ class Pool:
     def _ask(self, request: dict[str, Any], progress: Callable[[str], None]) -> None:
         request["settings"] = self._settings.model_dump(mode="json")
         with self._lock:
-            try:
-                answer = self._started().ask(request, self._settings.planning.time_limit_s, progress)
-            except PlanningFailed:
-                self._drop()
-                raise
+            answer = self._answer(request, progress)
             if answer.get("words") == "out of memory":
                 self._drop()
                 limit_mb = self._settings.planning.memory_mb
@@ -72,6 +68,16 @@ class Pool:
                 )
         if "failed" in answer:
             raise getattr(errors, answer["failed"])(answer["words"])
+
+    def _answer(self, request: dict[str, Any], progress: Callable[[str], None]) -> dict[str, Any]:
+        answer: dict[str, Any] | None = None
+        try:
+            answer = self._started().ask(request, self._settings.planning.time_limit_s, progress)
+        finally:
+            # Whatever was thrown: what a worker says from here on would answer another question.
+            if answer is None:
+                self._drop()
+        return answer
 
     def _started(self) -> _Worker:
         if self._closed:

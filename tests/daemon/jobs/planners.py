@@ -11,7 +11,23 @@ from pathlib import Path
 from daemon.config import Settings
 from daemon.errors import BadPicture
 
-PROGRAM = "G21\nG90\nG0 Z5\nG0 X1 Y1\nG1 Z0 F600\nG1 X9 Y1 F1200\nG0 Z5\nG0 X1 Y5\nG1 Z0 F600\nG1 X9 Y5 F1200\nG0 Z5\n"
+PROGRAM = """(linedrawd: 2 strokes)
+(no stroke)
+G21 G90
+G0 Z5
+(stroke 0)
+G0 X1 Y1
+G1 Z0 F600
+G1 X9 Y1 F1200
+G0 Z5
+(stroke 1)
+G0 X1 Y5
+G1 Z0 F600
+G1 X9 Y5 F1200
+G0 Z5
+(no stroke)
+G0 X0 Y0
+"""
 
 
 def plan_picture(
@@ -26,12 +42,14 @@ def plan_picture(
     strokes = [[[1, 1], [9, 1]], [[1, 5], [9, 5]]]
     (folder / "strokes.json").write_text(json.dumps({"strokes": strokes, "machine": machine, "nice": os.nice(0)}))
     (folder / "program.gcode").write_text(PROGRAM)
+    (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None}))
     (folder / "environment.json").write_text(json.dumps(dict(os.environ)))
 
 
 def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     ink = json.loads((folder / "ink.json").read_text())
-    (folder / "report.json").write_text(json.dumps({"ink_strokes": len(ink["strokes"])}))
+    report = json.loads((folder / "report.json").read_text()) | {"ink_strokes": len(ink["strokes"])}
+    (folder / "report.json").write_text(json.dumps(report))
 
 
 def _bad() -> None:

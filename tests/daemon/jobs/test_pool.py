@@ -75,6 +75,17 @@ def test_an_endless_picture_is_broken_off(tmp_path: Path) -> None:
     pool.close()
 
 
+def test_an_answer_that_nobody_waited_for_answers_no_other_question(pool: Pool, tmp_path: Path) -> None:
+    def give_up(stage: str) -> None:
+        raise KeyboardInterrupt
+
+    (tmp_path / "source.png").write_text("good")
+    with pytest.raises(KeyboardInterrupt):
+        pool.plan(tmp_path / "source.png", tmp_path, "plotter", progress=give_up)
+    with pytest.raises(BadPicture):
+        plan(pool, tmp_path, "bad")
+
+
 def test_one_worker_is_kept_for_all_pictures(pool: Pool, tmp_path: Path) -> None:
     plan(pool, tmp_path, "good")
     first = pool._worker
@@ -85,9 +96,10 @@ def test_one_worker_is_kept_for_all_pictures(pool: Pool, tmp_path: Path) -> None
 
 
 def test_the_ink_is_measured_where_the_simulator_left_it(pool: Pool, tmp_path: Path) -> None:
+    plan(pool, tmp_path, "good")
     (tmp_path / "ink.json").write_text('{"strokes": [[[0, 0], [1, 1]]]}')
     pool.measure(tmp_path, "plotter")
-    assert json.loads((tmp_path / "report.json").read_text()) == {"ink_strokes": 1}
+    assert json.loads((tmp_path / "report.json").read_text())["ink_strokes"] == 1
 
 
 def test_closing_breaks_off_a_picture_and_leaves_no_process(pool: Pool, tmp_path: Path) -> None:

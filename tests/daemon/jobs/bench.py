@@ -1,0 +1,167 @@
+"""A desk with everything real around it but the machine, which draws at once and ends as it is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from daemon.errors import MachineFault
+from daemon.jobs.desk import Desk
+from daemon.jobs.drawing import Drawing, InkMm
+from daemon.jobs.folder import JobFolders
+from daemon.jobs.journal import Journal
+from daemon.jobs.planning import Planning
+from daemon.jobs.pool import Pool
+from daemon.jobs.runner import Runner
+from daemon.program.file import load_program
+from daemon.shapes import Program
+from firmware_protocol.session import Accepted, Ended, Event, Ready, Verdict
+from tests.daemon.jobs.test_pool import PLANNER, settings_with
+
+
+@dataclass
+class InstantMachine:
+    """Draws in no time. `endings`: how the next jobs end, FINISHED when there are no more."""
+
+    name: str = "instant"
+    endings: list[Ended] = field(default_factory=list)
+    drawn: int = 0
+    unplugged: bool = False
+    missing: Exception | None = None
+    opened: int = 0
+    closed: int = 0
+    stops: int = 0
+    while_drawing: Callable[[], None] = lambda: None
+    ink: InkMm | None = None
+    heard: Callable[[Event], None] = lambda event: None
+
+    def open(self, heard: Callable[[Event], None]) -> InstantMachine:
+        if self.missing:
+            raise self.missing
+        self.opened += 1
+        self.heard = heard
+        return self
+
+    def now(self) -> float:
+        return 12.5 * self.drawn
+
+    def connect(self) -> Ready:
+        return Ready("Instant 1", 128)
+
+    def draw(self, program: Program) -> Ended:
+        self.drawn += 1
+        for line in range(len(program.lines)):
+            self.heard(Accepted(line))
+        self.while_drawing()
+        if self.endings:
+            return self.endings.pop(0)
+        return Ended(Verdict.FINISHED, program.strokes, program.strokes, True, True, "drawn")
+
+    def listen(self) -> None:
+        if self.unplugged:
+            raise MachineFault("instant was unplugged: plug it in")
+
+    def line_times_s(self, program: Program) -> Sequence[float]:
+        return [float(line + 1) for line in range(len(program.lines))]
+
+    def take_ink(self) -> InkMm | None:
+        return self.ink
+
+    def stop(self) -> None:
+        self.stops += 1
+
+    def close(self) -> None:
+        self.closed += 1
+
+
+class Bench:
+    """One state folder, its desk, and a clock that only moves when it is told to."""
+
+    def __init__(self, root: Path, *, asks_for_sheets: bool = False, pool: Pool | None = None) -> None:
+        self.root, self.now_s = root, 100.0
+        self.before_drawing: Callable[[], object] = lambda: None
+        self.said: list[tuple[str, dict[str, Any]]] = []
+        self.shown: dict[str, Any] = {}
+        self._when_shown: Callable[[dict[str, Any]], None] = lambda values: None
+        self.inbox = root / "inbox"
+        self.inbox.mkdir(exist_ok=True)
+        self.machine = InstantMachine()
+        self.pool = pool or Pool(settings_with(root), planner=PLANNER)
+        self.journal = Journal(root / "journal.sqlite")
+        self.desk = Desk(
+            self.journal,
+            JobFolders(root / "jobs"),
+            say=lambda words, **values: self.said.append((words, values)),
+            show=self._show,
+            asks_for_sheets=asks_for_sheets,
+        )
+        self.planning = Planning(self.desk, self.pool, "plotter")
+        self.drawing = Drawing(
+            self.desk,
+            opened=self.machine.open,
+            load=self._load,
+            measure=lambda folder: self.pool.measure(folder, "plotter"),
+            now=lambda: self.now_s,
+        )
+        self.runner = Runner(self.desk, self.pool, self.planning, self.drawing)
+
+    def _load(self, path: Path) -> Program:
+        self.before_drawing()
+        return load_program(path)
+
+    def _show(self, **values: Any) -> None:
+        self.shown.update(values)
+        self._when_shown(values)
+
+    def on_show(self, tell: Callable[[dict[str, Any]], None]) -> None:
+        """`tell` hears each status that says how far the drawing has come."""
+        self._when_shown = lambda values: tell(values) if values.get("percent") else None
+
+    def when_shown(self, key: str, value: Any, do: Callable[[], object]) -> None:
+        """Once."""
+
+        def look(values: dict[str, Any]) -> None:
+            if values.get(key) == value:
+                self._when_shown = lambda values: None
+                do()
+
+        self._when_shown = look
+
+    def wait_for(self, true: Callable[[], object]) -> None:
+        """Sleeps on the desk's own bell."""
+        for _ in range(200):
+            seen = self.desk.changes
+            if true():
+                return
+            self.desk.wait(10.0, since=seen)
+        raise AssertionError(self.states())
+
+    def drop(self, name: str = "a.png", text: str = "good") -> str:
+        (self.inbox / name).write_text(text)
+        self.desk.take(self.inbox / name, name)
+        return self.journal.jobs()[-1].id
+
+    def planned(self, name: str = "a.png") -> str:
+        job = self.drop(name)
+        self.planning.turn()
+        return job
+
+    def states(self) -> list[str]:
+        return [job.state.value for job in self.journal.jobs()]
+
+    def words(self, job: int = -1) -> str:
+        return self.journal.jobs()[job].words
+
+    def restarted(self) -> Bench:
+        """As after kill -9: nothing is closed in order."""
+        self.journal.close()
+        after = Bench(self.root, pool=self.pool)
+        after.desk.recover(after.inbox)
+        return after
+
+    def close(self) -> None:
+        with closing(self.journal), closing(self.pool):
+            pass

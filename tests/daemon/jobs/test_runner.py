@@ -1,0 +1,332 @@
+"""Jobs go through their states: planned ahead, drawn once, and after a fault none starts until a person says so."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from daemon.errors import LinedrawError, MachineFault, NoMachine
+from daemon.jobs.pool import Pool
+from daemon.jobs.states import State
+from firmware_protocol.session import Ended, Verdict
+from tests.daemon.jobs.bench import Bench
+from tests.daemon.jobs.test_journal import full_disk
+from tests.daemon.jobs.test_pool import PLANNER, settings_with
+
+
+@pytest.fixture(scope="module")
+def pool(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pool]:
+    pool = Pool(settings_with(tmp_path_factory.mktemp("pool")), planner=PLANNER)
+    yield pool
+    pool.close()
+
+
+@pytest.fixture
+def bench(tmp_path: Path, pool: Pool) -> Iterator[Bench]:
+    bench = Bench(tmp_path, pool=pool)
+    yield bench
+    bench.journal.close()
+
+
+def fault(verdict: Verdict) -> Ended:
+    return Ended(verdict, 1, 2, verdict is Verdict.REJECTED, False, f"{verdict.value} at line 7: look at it")
+
+
+def test_a_picture_is_planned_and_drawn(bench: Bench) -> None:
+    bench.drop()
+    bench.planning.turn()
+    assert bench.states() == ["planned"]
+    bench.drawing.turn()
+    assert bench.states() == ["done"]
+    assert bench.words() == "all 2 strokes are drawn"
+
+
+def test_two_jobs_are_planned_ahead_and_no_more(bench: Bench) -> None:
+    for number in range(4):
+        bench.drop(f"{number}.png")
+    for _ in range(4):
+        bench.planning.turn()
+    assert bench.states() == ["planned", "planned", "queued", "queued"]
+
+
+def test_a_bad_picture_never_stops_the_next_one(bench: Bench) -> None:
+    bench.drop("bad.png", "bad")
+    bench.drop("good.png")
+    bench.planning.turn()
+    bench.planning.turn()
+    bench.drawing.turn()
+    assert bench.states() == ["failed", "done"]
+    assert bench.shown["last_error"] == "source.png is no picture: drop another"
+    assert bench.machine.drawn == 1
+
+
+def test_a_picture_whose_file_has_gone_fails_with_a_sentence(bench: Bench) -> None:
+    job = bench.drop()
+    (bench.desk.folders.path(job) / "source.png").unlink()
+    bench.planning.turn()
+    assert bench.states() == ["failed"]
+    assert "drop it into the inbox again" in bench.words()
+
+
+def test_without_a_machine_jobs_wait_and_the_status_says_for_what(bench: Bench) -> None:
+    bench.machine.missing = NoMachine("no serial adapter is plugged in: plug it in")
+    bench.planned()
+    assert 0 < bench.drawing.turn() <= 3.0
+    assert bench.states() == ["waiting"]
+    assert bench.shown["words"] == bench.words() == "no serial adapter is plugged in: plug it in"
+    bench.machine.missing = None
+    bench.drawing.turn()
+    assert bench.machine.opened == 0
+    bench.now_s += 3.0
+    bench.drawing.turn()
+    assert bench.states() == ["done"]
+
+
+def test_a_missing_machine_is_told_once(bench: Bench) -> None:
+    bench.machine.missing = NoMachine("no adapter: plug it in")
+    for _ in range(5):
+        bench.now_s += 10.0
+        bench.drawing.turn()
+    assert [words for words, _ in bench.said].count("no adapter: plug it in") == 1
+
+
+@pytest.mark.parametrize("verdict", [Verdict.ALARM, Verdict.RESTARTED, Verdict.SILENT, Verdict.UNPLUGGED])
+def test_a_fault_interrupts_the_job_and_no_further_one_starts_until_a_person_says_go(
+    bench: Bench, verdict: Verdict
+) -> None:
+    bench.machine.endings = [fault(verdict)]
+    bench.planned("a.png")
+    bench.planned("b.png")
+    for _ in range(3):
+        bench.drawing.turn()
+        bench.now_s += 100.0
+    assert bench.states() == ["interrupted", "planned"]
+    assert "1 are certainly drawn, none after the first 2 is touched; the pen may be down" in bench.words(0)
+    assert (bench.machine.drawn, bench.machine.opened, bench.machine.closed) == (1, 1, 1)
+    assert bench.shown["held"] == f"{verdict.value} at line 7: look at it"
+    bench.runner.go()
+    bench.drawing.turn()
+    assert bench.states() == ["interrupted", "done"]
+    assert bench.machine.opened == 2
+
+
+def test_a_refused_line_fails_the_job_and_holds_the_others_on_the_same_port(bench: Bench) -> None:
+    bench.machine.endings = [fault(Verdict.REJECTED)]
+    bench.planned()
+    bench.drawing.turn()
+    assert bench.states() == ["failed"]
+    assert bench.desk.held
+    assert bench.machine.closed == 0
+
+
+def test_a_fault_is_still_held_after_a_restart(bench: Bench) -> None:
+    bench.machine.endings = [fault(Verdict.SILENT)]
+    bench.planned("a.png")
+    bench.planned("b.png")
+    bench.drawing.turn()
+    after = bench.restarted()
+    after.drawing.turn()
+    assert after.states() == ["interrupted", "planned"]
+    assert after.machine.opened == 0
+    after.journal.close()
+
+
+def test_a_machine_that_is_unplugged_in_idle_is_opened_again(bench: Bench) -> None:
+    bench.drawing.turn()
+    bench.machine.unplugged = True
+    bench.drawing.turn()
+    assert bench.machine.closed == 1
+    bench.machine.unplugged = False
+    bench.now_s += 30.0
+    bench.planned()
+    bench.drawing.turn()
+    assert bench.states() == ["done"]
+
+
+def test_a_fault_that_the_link_raises_interrupts_too(bench: Bench) -> None:
+    def gone() -> None:
+        raise MachineFault("gone: look")
+
+    bench.machine.while_drawing = gone
+    bench.planned()
+    bench.drawing.turn()
+    assert bench.states() == ["interrupted"]
+    assert "0 are certainly drawn, none after the first 2 is touched" in bench.words()
+
+
+def test_one_drawing_a_sheet(tmp_path: Path, pool: Pool) -> None:
+    bench = Bench(tmp_path, asks_for_sheets=True, pool=pool)
+    bench.planned("a.png")
+    bench.planned("b.png")
+    for _ in range(3):
+        bench.drawing.turn()
+    assert bench.states() == ["done", "waiting"]
+    assert bench.words() == "waiting for a new sheet: put one in and say `linedrawd next`"
+    bench.runner.new_sheet()
+    bench.drawing.turn()
+    assert bench.states() == ["done", "done"]
+    bench.journal.close()
+
+
+def test_stop_ends_the_drawing_and_freezes_the_queue(bench: Bench) -> None:
+    bench.machine.endings = [Ended(Verdict.STOPPED, 1, 2, True, True, "stopped: put a new sheet in")]
+    bench.machine.while_drawing = lambda: print(bench.runner.stop())
+    bench.planned("a.png")
+    bench.planned("b.png")
+    for _ in range(3):
+        bench.drawing.turn()
+    assert bench.states() == ["interrupted", "planned"]
+    assert bench.machine.stops == 2
+    assert bench.shown["held"] == "a person stopped the machine"
+
+
+def test_a_stop_just_before_the_first_line_draws_nothing(bench: Bench) -> None:
+    bench.planned()
+    bench.before_drawing = bench.runner.stop
+    bench.drawing.turn()
+    assert bench.states() == ["interrupted"]
+    assert bench.machine.drawn == 0
+
+
+def test_a_cancelled_drawing_is_stopped_and_the_next_one_starts(bench: Bench) -> None:
+    first = bench.planned("a.png")
+    bench.planned("b.png")
+    bench.machine.endings = [Ended(Verdict.STOPPED, 1, 2, True, True, "stopped")]
+    bench.machine.while_drawing = lambda: print(bench.runner.cancel(first))
+    bench.drawing.turn()
+    bench.machine.while_drawing = lambda: None
+    bench.drawing.turn()
+    assert bench.states() == ["cancelled", "done"]
+    assert bench.machine.stops == 1
+
+
+def test_a_waiting_job_is_cancelled_by_its_number(bench: Bench) -> None:
+    bench.planned()
+    assert bench.runner.cancel("1") == "job 000001-a is dropped (it was planned)"
+    bench.drawing.turn()
+    assert bench.states() == ["cancelled"]
+    assert bench.machine.drawn == 0
+
+
+def test_a_job_is_cancelled_while_it_is_planned(bench: Bench) -> None:
+    job = bench.drop("a.png", "hang")
+    bench.drop("b.png")
+    thread = Thread(target=bench.planning.turn)
+    bench.when_shown("stage", "decode", lambda: bench.runner.cancel(job))
+    thread.start()
+    thread.join(10)
+    bench.planning.turn()
+    assert bench.states() == ["cancelled", "planned"]
+
+
+@pytest.mark.parametrize("job", ["7", "nonsense", ""])
+def test_a_job_that_is_not_there_cannot_be_cancelled(bench: Bench, job: str) -> None:
+    with pytest.raises(LinedrawError, match="lists them"):
+        bench.runner.cancel(job)
+
+
+def test_a_job_that_is_over_cannot_be_cancelled(bench: Bench) -> None:
+    bench.planned()
+    bench.drawing.turn()
+    with pytest.raises(LinedrawError, match="is done already"):
+        bench.runner.cancel("1")
+
+
+def test_a_job_found_in_drawing_is_interrupted_and_nothing_starts_by_itself(bench: Bench) -> None:
+    bench.planned("a.png")
+    bench.planned("b.png")
+    bench.desk.begin_drawing()
+    after = bench.restarted()
+    after.drawing.turn()
+    assert after.states() == ["interrupted", "planned"]
+    assert after.machine.opened == 0
+    after.runner.go()
+    after.drawing.turn()
+    assert after.states() == ["interrupted", "done"]
+    after.journal.close()
+
+
+def test_a_job_found_in_planning_is_planned_again(bench: Bench) -> None:
+    bench.drop()
+    bench.desk.begin_planning()
+    after = bench.restarted()
+    assert after.states() == ["queued"]
+    after.journal.close()
+
+
+def test_a_picture_that_was_claimed_but_not_recorded_becomes_a_job(bench: Bench) -> None:
+    (bench.inbox / "a.png").write_text("good")
+    bench.desk.folders.take(bench.inbox / "a.png")
+    after = bench.restarted()
+    after.planning.turn()
+    assert after.states() == ["planned"]
+    after.journal.close()
+
+
+def test_progress_counts_strokes_and_seconds_by_the_acknowledged_lines(bench: Bench) -> None:
+    seen: list[tuple[int, float, float]] = []
+    bench.on_show(lambda shown: seen.append((shown["strokes_done"], shown["percent"], shown["seconds_left"])))
+    bench.planned()
+    bench.drawing.turn()
+    assert seen[4:6] == [(0, 45.5, 6.0), (1, 54.5, 5.0)]
+    assert seen[10] == (2, 100.0, 0.0)
+
+
+def test_the_ink_of_a_simulated_machine_is_kept_and_measured(bench: Bench) -> None:
+    bench.machine.ink = [[(1.0, 1.0), (9.0, 1.0)], [(1.0, 5.0), (9.0, 5.0)]]
+    folder = bench.desk.folders.path(bench.planned())
+    bench.drawing.turn()
+    assert len(json.loads((folder / "ink.json").read_text())["strokes"]) == 2
+    assert json.loads((folder / "report.json").read_text()) == {"strokes": 2, "real_s": 12.5, "ink_strokes": 2}
+
+
+def test_a_drawing_that_cannot_be_recorded_is_not_forgotten(bench: Bench) -> None:
+    """The disk is full when the last line is drawn, and is freed while the runner waits."""
+    bench.planned()
+    limit = full_disk(64)
+    bench.machine.while_drawing = limit.__enter__
+    bench.desk.wait = lambda seconds, since=None: limit.__exit__(None, None, None)  # type: ignore[method-assign]
+    bench.drawing.turn()
+    assert bench.states() == ["done"]
+    assert any("cannot be written" in words and "free the disk" in words for words, _ in bench.said)
+
+
+def test_a_full_disk_while_a_job_is_written_loses_no_picture(bench: Bench) -> None:
+    bench.drop("fill.png", "fill")
+    bench.drop("good.png")
+    bench.planning.turn()
+    bench.planning.turn()
+    assert bench.states() == ["failed", "planned"]
+    assert "free the disk" in str(bench.shown["last_error"])
+    assert (bench.desk.folders.path("000001-fill") / "source.png").exists()
+
+
+def test_a_mistake_of_ours_holds_everything(bench: Bench) -> None:
+    def mistake() -> float:
+        bench.desk.ending = True
+        raise KeyError("a mistake")
+
+    bench.runner._turn_on(mistake)
+    assert "a mistake in linedrawd (KeyError('a mistake'))" in bench.desk.held
+    assert bench.machine.stops == 0
+
+
+def test_the_loops_draw_what_comes_and_end(tmp_path: Path) -> None:
+    bench = Bench(tmp_path)
+    loops = [Thread(target=bench.runner.plan_on), Thread(target=bench.runner.draw_on)]
+    for loop in loops:
+        loop.start()
+    for number in range(5):
+        bench.drop(f"{number}.png")
+    bench.wait_for(lambda: bench.journal.jobs(State.DONE)[4:])
+    bench.runner.end()
+    for loop in loops:
+        loop.join(10)
+        assert not loop.is_alive()
+    assert bench.states() == ["done"] * 5
+    assert bench.machine.closed == 1
+    bench.close()
