@@ -17,7 +17,7 @@ from firmware_protocol.session import Accepted, Event, JobLine, NotReady, Ready,
 
 RESET, HOLD = b"\x18", b"!"
 
-POLL_S = {State.READY: 1.0, State.HOLDING: 0.1}
+POLL_S = {State.READY: 1.0, State.HOLDING: 0.1, State.RESTARTED: 0.1}
 """Seconds between two `?` where it is not GRBL's own advice of 0.2: a hold is watched closer, the pen is down."""
 USUAL_POLL_S = 0.2
 
@@ -209,12 +209,15 @@ class Conversation:
         if self._job is not None:
             self._job.held = True
 
+    def _enter_emptying(self, _: Cause) -> None:
+        self.urgent += RESET
+
     def _enter_lifting(self, _: Cause) -> None:
         self.flow = Flow((*self._habits.lift, BARRIER), room_bytes=None)
 
     def _enter_restarted(self, cause: Cause) -> None:
-        # What was on its way when the controller restarted would still be drawn: the reset throws it away.
-        self.urgent += RESET
+        # What was on its way when the controller restarted would still be drawn: hold it, then a reset throws it away.
+        self.urgent += HOLD
         self.flow = Flow((), room_bytes=None)
         self._doom(cause, position_known=False)
 
@@ -254,6 +257,7 @@ _ON_REPORT: dict[State, Callable[[Conversation, StatusReport], None]] = {
     State.HOMING: lambda conversation, report: None,
     State.SETTLING: Conversation._settled,
     State.HOLDING: Conversation._held,
+    State.RESTARTED: Conversation._held,
     State.ASKING: Conversation._settled,
 }
 _ENTER: dict[State, Callable[[Conversation, Cause], None]] = {
@@ -264,6 +268,7 @@ _ENTER: dict[State, Callable[[Conversation, Cause], None]] = {
     State.RESETTING: Conversation._enter_resetting,
     State.LIFTING: Conversation._enter_lifting,
     State.RESTARTED: Conversation._enter_restarted,
+    State.EMPTYING: Conversation._enter_emptying,
     State.ASKING: Conversation._enter_asking,
     State.RELIFTING: Conversation._enter_lifting,
     State.LOST: Conversation._enter_lost,

@@ -50,7 +50,7 @@ class GrblSession:
         flows.check(lift, buffer_bytes=Controller().buffer_bytes)
         habits = Habits(flow == "count", tuple(lift), lift_after_restart, home)
         self._silent_after_s = silent_after_s
-        self._limits_s = dict.fromkeys((State.RESETTING, State.RESTARTED, State.ASKING), silent_after_s)
+        self._limits_s = dict.fromkeys((State.RESETTING, State.RESTARTED, State.EMPTYING, State.ASKING), silent_after_s)
         self._limits_s |= dict.fromkeys((State.WAITING, State.GREETED), banner_within_s) | {State.HOMING: home_within_s}
         self._knocks = [(now + BOOT_S, ASK), (now + BOOT_S + PATIENCE_S, RESET)]
         self._watch = Watch(now=now, silent_after_s=silent_after_s)

@@ -18,7 +18,8 @@ class State(Enum):
     HOLDING = "waiting for the feed hold to stand"
     RESETTING = "waiting for the banner after a hold and a reset"
     LIFTING = "lifting the pen after a stop"
-    RESTARTED = "emptying a controller that restarted by itself"
+    RESTARTED = "holding a controller that restarted by itself"
+    EMPTYING = "resetting it after the hold"
     ASKING = "asking a restarted controller for its state"
     RELIFTING = "lifting the pen after a restart"
     LOST = "over"
@@ -52,11 +53,12 @@ WITH_A_JOB = (
     State.RESETTING,
     State.LIFTING,
     State.RESTARTED,
+    State.EMPTYING,
     State.ASKING,
     State.RELIFTING,
 )
 
-POLLED = frozenset(State) - {State.WAITING, State.HOMING, State.RESETTING, State.RESTARTED, State.LOST}
+POLLED = frozenset(State) - {State.WAITING, State.HOMING, State.RESETTING, State.EMPTYING, State.LOST}
 """Here the controller is asked `?` and must answer."""
 
 SENDING = frozenset({State.READING, State.HOMING, State.STREAMING, State.LIFTING, State.RELIFTING})
@@ -97,12 +99,14 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     (State.LIFTING, Signal.COMPLETE): State.READY,
     (State.LIFTING, Signal.REFUSED): State.LOST,
     (State.LIFTING, Signal.STUCK): State.LOST,
-    # A controller that restarted by itself: its buffer is emptied, and only a pen-up command may follow.
+    # A controller that restarted by itself: what was still on its way is held and thrown away, then a lift may follow.
     (State.STREAMING, Signal.BANNER): State.RESTARTED,
     (State.SETTLING, Signal.BANNER): State.RESTARTED,
     (State.HOLDING, Signal.BANNER): State.RESTARTED,
     (State.LIFTING, Signal.BANNER): State.RESTARTED,
-    (State.RESTARTED, Signal.BANNER): State.ASKING,
+    (State.RESTARTED, Signal.BANNER): State.LOST,
+    (State.RESTARTED, Signal.HELD): State.EMPTYING,
+    (State.EMPTYING, Signal.BANNER): State.ASKING,
     (State.ASKING, Signal.STILL): State.RELIFTING,
     (State.ASKING, Signal.NO_LIFT): State.LOST,
     (State.ASKING, Signal.BANNER): State.LOST,
@@ -113,6 +117,6 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     # From everywhere.
     **{(state, Signal.SILENCE): State.LOST for state in State if state is not State.LOST},
     **{(state, Signal.UNPLUG): State.LOST for state in State if state is not State.LOST},
-    **{(state, Signal.ALARM): State.LOST for state in WITH_A_JOB if state is not State.RESTARTED},
+    **{(state, Signal.ALARM): State.LOST for state in WITH_A_JOB},
 }
 """What the table lacks has no meaning in that state: a stray answer of the device changes nothing."""

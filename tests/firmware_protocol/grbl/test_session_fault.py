@@ -14,6 +14,12 @@ def after(play: Play, seconds: float = 60.0) -> bytes:
     return play.wait(seconds)
 
 
+def restarted(play: Play) -> None:
+    """A restart, and the hold and the reset that follow it."""
+    for line in (BANNER, HELD, BANNER):
+        play.say(line)
+
+
 @pytest.mark.parametrize(("code", "known"), [(1, False), (2, True), (3, False)])
 def test_an_alarm_ends_the_job_and_nothing_more_is_sent(code: int, known: bool) -> None:
     play = drawing()
@@ -32,9 +38,9 @@ def test_an_alarm_whose_line_was_lost_is_seen_in_the_report() -> None:
 def test_a_restart_empties_the_controller_and_then_only_lifts_the_pen() -> None:
     play = drawing()
     play.say("ok")
-    assert play.say("", BANNER) == b"\x18"
-    assert play.say("ok", "error:22") == b""
-    assert play.say("", BANNER) == b"?"
+    assert play.say("", BANNER) == b"!?"
+    assert play.say("ok", "error:22", HELD) == b"\x18"
+    assert play.say("ok", "", BANNER) == b"?"
     assert [play.say(line) for line in (IDLE, "ok", "ok", "ok")] == [b"?G90 G21\n", b"G0 Z5\n", BARRIER, b""]
     end = play.ended
     assert (end.verdict, end.position_known, end.pen_lifted) == (Verdict.RESTARTED, False, True)
@@ -45,20 +51,18 @@ def test_a_restart_empties_the_controller_and_then_only_lifts_the_pen() -> None:
 
 def test_nothing_moves_after_a_restart_where_the_lift_is_switched_off() -> None:
     play = drawing(lift_after_restart=False)
-    play.say(BANNER)
-    play.say(BANNER)
+    restarted(play)
     assert (play.ended.verdict, play.ended.pen_lifted) == (Verdict.RESTARTED, False)
     assert after(play) == b""
 
 
 def test_nothing_moves_after_a_restart_into_an_alarm() -> None:
     play = drawing()
-    sent = play.say(BANNER) + play.say(BANNER, UNLOCK) + play.say(ALARM)
-    assert sent == b"\x18?"
+    assert play.say(BANNER, UNLOCK) + play.say(ALARM) == b"!?"
     assert (play.ended.verdict, play.ended.pen_lifted) == (Verdict.RESTARTED, False)
 
 
-@pytest.mark.parametrize("spoken", [(), (BANNER,), (BANNER, IDLE)])
+@pytest.mark.parametrize("spoken", [(), (HELD,), (HELD, BANNER), (HELD, BANNER, IDLE)])
 def test_a_restarted_controller_that_says_no_more_is_given_up(spoken: tuple[str, ...]) -> None:
     play = drawing()
     play.say(BANNER)
@@ -68,9 +72,10 @@ def test_a_restarted_controller_that_says_no_more_is_given_up(spoken: tuple[str,
     assert (play.ended.verdict, play.ended.position_known, play.ended.pen_lifted) == (Verdict.RESTARTED, False, False)
 
 
-def test_a_third_banner_ends_the_attempts_to_lift() -> None:
+@pytest.mark.parametrize("again", [(BANNER,), (HELD, BANNER, BANNER), (HELD, BANNER, IDLE, BANNER)])
+def test_one_more_restart_ends_the_attempts_to_lift(again: tuple[str, ...]) -> None:
     play = drawing()
-    for line in (BANNER, BANNER, IDLE, BANNER):
+    for line in (BANNER, *again):
         play.say(line)
     assert (play.ended.verdict, play.ended.pen_lifted) == (Verdict.RESTARTED, False)
 
@@ -82,14 +87,13 @@ def test_a_restart_at_any_later_moment_is_no_planned_one(lines: tuple[str, ...])
         play.say(line)
     if HELD in lines:
         play.say(BANNER)
-    assert play.say(BANNER) == b"\x18"
+    assert play.say(BANNER) == b"!?"
 
 
 def test_a_refused_line_is_still_told_after_a_restart() -> None:
     play = drawing(lift=())
     play.say("error:20")
-    play.say(BANNER)
-    play.say(BANNER)
+    restarted(play)
     assert play.ended.verdict is Verdict.RESTARTED
     assert "error:20" in play.ended.why
 
