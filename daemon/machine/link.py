@@ -109,7 +109,8 @@ class Link:
 
     def _events(self, *, until: float | None) -> Iterator[Event | None]:
         """Every event, and None before each wait, which is the moment to look at what other threads have asked for."""
-        data = b""
+        # What came while nobody listened is heard before anything is judged to be late.
+        data = self._transport.read(self._transport.now())
         while True:
             now = self._transport.now()
             events = [*self._session.receive(data, now), *self._session.expire(now)]
