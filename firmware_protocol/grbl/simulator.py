@@ -1,0 +1,187 @@
+"""A simulated plotter with GRBL 1.1h on a 328P, moved only by the clock that is handed in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from firmware_protocol.grbl import firmware
+from firmware_protocol.grbl.chip import Chip, Signal, State
+from firmware_protocol.grbl.faults import BrownOut, DropByte, Fault, FlipByte, Hang, HardLimit, LoseOk, Timed, Unplug
+from firmware_protocol.grbl.ink import Ink, PenRule, Polyline
+from firmware_protocol.grbl.lookahead import Vector
+from firmware_protocol.grbl.modal import Memory
+from firmware_protocol.grbl.realtime import Routine, Wait
+from firmware_protocol.grbl.settings import Settings
+from firmware_protocol.grbl.wire import Outbound
+
+_NEVER = float("inf")
+
+
+class GrblSimulator:
+    """Bytes and the time come in, bytes and ink come out.
+
+    Not modelled: probe contact (G38.2 and G38.3 find none), laser mode ($32), single steps and lost steps, the
+    accessory bytes but for coolant and spindle percentage, closed limit switches other than those of homing and
+    `HardLimit`, the firmware's rare race of a reset without its alarm, and `$N2=` and `$N3=`, which here do nothing.
+
+    settings: `$` numbers to values that differ from the generic defaults. pen: when it touches the sheet.
+    boot_s: how long the boot loader is deaf after `open`. switches_mm: where the homing switches lie, from the place
+    where the machine was switched on; without it `$H` ends in ALARM:9. Raises ValueError for an unknown setting.
+    """
+
+    def __init__(
+        self,
+        *,
+        settings: Mapping[int, float] | None = None,
+        faults: Sequence[Fault] = (),
+        pen: PenRule | None = None,
+        boot_s: float = 0.0,
+        switches_mm: Vector | None = None,
+    ) -> None:
+        self._faults = tuple(faults)
+        self._timed_faults = [f for f in faults if isinstance(f, Hang | BrownOut | HardLimit | Unplug)]
+        self._boot_s, self._switches_mm = boot_s, switches_mm
+        self._outbound = Outbound()
+        self._chip = Chip(Memory(Settings(settings)), Ink(pen or PenRule()), self._say)
+        self._main: Routine | None = None
+        self._due: Wait = None
+        self._polling = False
+        self._timed: list[tuple[float, Timed]] = []
+        self._sent = self._oks = 0
+        self.unplugged = False
+
+    @property
+    def ink(self) -> list[Polyline]:
+        """What is on the sheet now: polylines of (x, y) in mm from the place where the machine was switched on."""
+        return self._chip.ink_now().polylines
+
+    @property
+    def position_mm(self) -> Vector:
+        """Where the pen is on the sheet, whatever the controller believes."""
+        return self._chip.on_sheet(self._chip.stepper.now_at()[0])
+
+    @property
+    def overflows(self) -> int:
+        """Bytes that found the receive ring full and vanished."""
+        return self._chip.inbound.overflows
+
+    @property
+    def lost_bytes(self) -> int:
+        """Bytes that came while the chip was writing to its memory or booting and vanished."""
+        return self._chip.inbound.lost
+
+    @property
+    def oks(self) -> int:
+        """Lines acknowledged since the port was opened, those included whose `ok` was lost."""
+        return self._oks
+
+    def open(self, now: float) -> None:
+        """The host opens the port: DTR resets the chip, the position is forgotten, faults are counted from now on."""
+        self._run_until(now)
+        self.unplugged = False
+        self._sent = self._oks = 0
+        self._timed = [(now + f.at_s, f) for f in self._timed_faults if f.at_s is not None]
+        self._timed.sort(key=_moment)
+        self._outbound.unplug(now)
+        self._chip.inbound.unplug(now)
+        self._power_on(self._boot_s)
+
+    def receive(self, data: bytes, now: float) -> None:
+        """Bytes leave the host at `now`; they arrive one by one, at 11,520 a second."""
+        self._run_until(now)
+        if self._main is None:
+            return
+        self._chip.inbound.send(self._damaged(data), now)
+
+    def advance(self, now: float) -> bytes:
+        """Let the time pass up to `now`. Returns what has reached the host and was not returned before."""
+        self._run_until(now)
+        return b"" if self.unplugged else self._outbound.arrived(now)
+
+    def next_time(self) -> float | None:
+        """When something will next change or be said; None: nothing more until something is received."""
+        soonest = min(self._next_event(), self._outbound.next_s())
+        return None if soonest == _NEVER else soonest
+
+    # -- the clock --
+
+    def _run_until(self, now: float) -> None:
+        while (event := self._next_event()) <= now:
+            self._step(max(event, self._chip.now))
+        self._step(max(now, self._chip.now))
+
+    def _next_event(self) -> float:
+        fault = self._timed[0][0] if self._timed else _NEVER
+        if self._main is None:
+            return fault
+        chip = self._chip
+        due = _NEVER if self._due is None else max(self._due, chip.stall_until_s)
+        return min(due, chip.inbound.next_s(), chip.stepper.next_s(), fault)
+
+    def _step(self, now: float) -> None:
+        chip = self._chip
+        chip.now = now
+        if self._main is not None:
+            was_moving = chip.stepper.moving
+            happened = chip.stepper.advance(now)
+            if was_moving and not chip.stepper.moving:
+                chip.signals |= Signal.STOPPED
+                chip.drivers_off()
+            happened |= chip.inbound.absorb(now)
+            if happened and self._polling:
+                self._due = now
+        while self._timed and self._timed[0][0] <= now:
+            self._happen(self._timed.pop(0)[1])
+        while self._main is not None and self._due is not None and max(self._due, chip.stall_until_s) <= now:
+            self._due = next(self._main)
+            self._polling = self._due is None
+
+    def _power_on(self, deaf_s: float = 0.0) -> None:
+        chip = self._chip
+        chip.lose_position()
+        chip.state = State.ALARM if chip.settings[22] else State.IDLE
+        chip.stall_until_s = chip.now + deaf_s
+        chip.inbound.deaf_until_s = chip.stall_until_s if deaf_s else 0.0
+        chip.inbound.reading = False
+        chip.restart()
+        self._main = firmware.run(chip, self._switches_mm)
+        self._due, self._polling = chip.now, False
+
+    def _say(self, text: str) -> None:
+        if text == "ok\r\n":
+            self._oks += 1
+            if LoseOk(self._oks - 1) in self._faults:
+                return
+        ready_s = self._outbound.send(text.encode("latin-1"), self._chip.now)
+        self._chip.stall_until_s = max(self._chip.stall_until_s, ready_s)
+        if text == "ok\r\n":
+            self._timed += [(self._chip.now, f) for f in self._timed_faults if f.after_oks == self._oks]
+            self._timed.sort(key=_moment)
+
+    # -- faults --
+
+    def _damaged(self, data: bytes) -> bytes:
+        first, self._sent = self._sent, self._sent + len(data)
+        for fault in sorted((f for f in self._faults if isinstance(f, DropByte | FlipByte)), key=lambda f: -f.index):
+            at = fault.index - first
+            if 0 <= at < len(data):
+                flipped = bytes([data[at] ^ fault.bits]) if isinstance(fault, FlipByte) else b""
+                data = data[:at] + flipped + data[at + 1 :]
+        return data
+
+    def _happen(self, fault: Timed) -> None:
+        chip = self._chip
+        if isinstance(fault, HardLimit):
+            chip.hard_limit()
+            if self._polling:
+                self._due = chip.now
+        elif isinstance(fault, BrownOut):
+            self._power_on()
+        else:
+            chip.stepper.stop(chip.now)
+            self._main = None
+            self.unplugged = isinstance(fault, Unplug)
+
+
+def _moment(pair: tuple[float, Timed]) -> float:
+    return pair[0]
