@@ -101,9 +101,9 @@ def _bytes(levels: Map) -> Picture:
 
 
 def _resized(image: Map, scale: float) -> Map:
-    """Pixels stay visible squares where a page is enlarged, and are averaged where it is made smaller."""
+    """Pixels stay visible squares where a page is much enlarged, and are averaged where it is made smaller."""
     size = (max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale)))
-    how = cv2.INTER_AREA if scale < 1 else cv2.INTER_NEAREST
+    how = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR if scale < 2 else cv2.INTER_NEAREST
     return np.asarray(cv2.resize(image, size, interpolation=how), np.float32)
 
 

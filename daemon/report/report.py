@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal, TypeAlias
 
@@ -37,6 +37,8 @@ class Report:
     """Seconds of each stage of planning, in order."""
     peak_memory_mb: float
     """Of the planning process, resident."""
+    from_px: Sequence[Sequence[float]]
+    """Px of the given picture to machine mm: 2 x 3, as in Toolpath."""
     fidelity_of: FidelityOf
     """Which lines were compared with the page: the planned ones or the ink that a simulated machine has kept."""
     fidelity: Fidelity
@@ -71,6 +73,7 @@ def planned_report(
         real_s=None,
         stage_s=dict(stage_s),
         peak_memory_mb=peak_memory_mb,
+        from_px=toolpath.from_px.tolist(),
         fidelity_of="planned",
         fidelity=fidelity,
     )

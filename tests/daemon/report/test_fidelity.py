@@ -61,6 +61,10 @@ def test_tolerances_are_one_pixel_beside_ink_and_one_and_a_half_off_the_centre(
     assert judge(inked(LINE), [beside])[:2] == (pytest.approx(precision, abs=0.02), pytest.approx(recall, abs=0.02))
 
 
+def test_one_and_a_half_pixels_off_the_centre_of_a_thin_line_are_allowed() -> None:
+    assert judge(inked(LINE, width_px=1), [LINE + np.array([0.0, 1.4])], 1.0)[1] > 0.95
+
+
 def test_half_a_line_width_off_the_centre_of_a_thick_line_is_allowed() -> None:
     beside = LINE + np.array([0.0, 4.4])
     assert judge(inked(LINE, width_px=9), [beside], 9.0)[1] > 0.95

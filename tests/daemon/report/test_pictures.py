@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -127,6 +129,18 @@ def test_strokes_and_ink_lie_on_their_tiles_as_on_the_given_picture() -> None:
 def test_ink_is_as_wide_as_the_pen() -> None:
     wide = (drawn_tile(row(line_width_px=4.0)) < 128).all(axis=2)
     assert wide[:, 110].sum() == pytest.approx(10, abs=1)
+
+
+@pytest.mark.parametrize("width_px", [1, 3, 5, 9])
+def test_a_line_is_as_wide_as_it_was_asked_for(width_px: int) -> None:
+    picture = canvas.blank(60, 40)
+    canvas.line(picture, np.array([[10.0, 20.0], [50.0, 20.0]]), (0, 0, 0), width_px)
+    assert (255 - picture[:, 30, 0].astype(float)).sum() / 255 == pytest.approx(width_px, abs=0.7)
+
+
+def test_a_dot_of_ink_is_as_wide_as_the_pen() -> None:
+    dot = replace(row(line_width_px=4.0), drawn=[np.array([[60.0, 30.0]])])
+    assert (drawn_tile(dot) < 128).all(axis=2).sum() == pytest.approx(np.pi * 5**2, rel=0.15)
 
 
 def test_neighbouring_strokes_differ_in_colour() -> None:
