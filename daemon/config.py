@@ -17,7 +17,7 @@ from daemon.errors import SettingsError
 DEFAULT_MACHINE = "plotter"
 """What the machine is called where no file names one."""
 SIMULATED_GRBL = "sim://grbl"
-
+_PAPER_UP_MM = -5.0
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
 PairMm: TypeAlias = tuple[float, float]
 
@@ -79,18 +79,12 @@ class Sheet(Section):
 
 
 class ZPenSettings(Section):
-    """The pen hangs on the Z axis; up is +Z."""
+    """The pen hangs on the Z axis; up is +Z, only the paper's own machine has it at Z-5."""
 
     kind: Literal["z"]
     up_mm: float = 5.0
     down_mm: float = 0.0
     plunge_mm_s: Positive = 10.0
-
-    @model_validator(mode="after")
-    def _up_is_above_down(self) -> ZPenSettings:
-        if self.up_mm <= self.down_mm:
-            raise ValueError(f"up_mm = {self.up_mm:g} must be above down_mm = {self.down_mm:g}")
-        return self
 
 
 class ServoPenSettings(Section):
@@ -140,9 +134,23 @@ class Machine(Section):
             raise ValueError(
                 f"'{url}' is no way to a machine: use auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"
             )
-        if url.startswith("sim://") and url != SIMULATED_GRBL:
+        if url.startswith("sim://") and url.partition("?")[0] != SIMULATED_GRBL:
             raise ValueError(f"'{url}' is not simulated: use {SIMULATED_GRBL}")
         return url
+
+    @model_validator(mode="after")
+    def _up_is_above_down(self) -> Machine:
+        pen = self.pen
+        if isinstance(pen, ZPenSettings) and pen.up_mm <= pen.down_mm and self.dialect != "paper":
+            raise ValueError(f"pen.up_mm = {pen.up_mm:g} must be above pen.down_mm = {pen.down_mm:g}")
+        return self
+
+    def check_streamable(self) -> None:
+        """Raises SettingsError when its programs are files for another machine: this one would press the pen down."""
+        if self.dialect == "paper" and not (isinstance(self.pen, ZPenSettings) and self.pen.up_mm == _PAPER_UP_MM):
+            raise SettingsError(
+                "dialect = 'paper' lifts to Z-5: say pen.up_mm = -5 if that is up here, or dialect = 'grbl'"
+            )
 
     @property
     def simulated(self) -> bool:

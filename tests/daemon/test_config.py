@@ -35,7 +35,7 @@ def settings(text: str, folder: Path, *, device: str | None = None, port: str | 
         ("[machines.left]\nurl = 'usb:3'", "use auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"),
         ("[machines.left]\nurl = 'sim://emco'", "use sim://grbl"),
         ("[machines.left]\ndevice = 'emco'", "device 'emco' comes with a later version"),
-        ("[machines.left.pen]\nkind = 'z'\nup_mm = -1", "up_mm = -1 must be above down_mm = 0"),
+        ("[machines.left.pen]\nkind = 'z'\nup_mm = -1", "pen.up_mm = -1 must be above pen.down_mm = 0"),
         ("[machines.left]\n[machines.right]", "2 machines are set, this version drives one"),
         ("[planning", "is not TOML"),
     ],
@@ -77,6 +77,18 @@ def test_a_later_device_is_refused_on_the_command_line_too(tmp_path: Path) -> No
 def test_a_servo_pen_is_read(tmp_path: Path) -> None:
     pen = settings("[machines.a.pen]\nkind = 'servo'\nup_s = 10\ndown_s = 90", tmp_path).machines["a"].pen
     assert pen == ServoPenSettings(kind="servo", up_s=10, down_s=90, dwell_s=0.2)
+
+
+def test_the_paper_dialect_is_streamed_only_where_minus_five_is_up(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=r"say pen\.up_mm = -5"):
+        settings("[machines.a]\ndialect = 'paper'", tmp_path).machines["a"].check_streamable()
+    text = "[machines.a]\ndialect = 'paper'\npen = {kind = 'z', up_mm = -5}"
+    settings(text, tmp_path).machines["a"].check_streamable()
+    settings("[machines.a]", tmp_path).machines["a"].check_streamable()
+
+
+def test_a_simulated_machine_may_be_told_to_fail(tmp_path: Path) -> None:
+    assert settings("", tmp_path, port="sim://grbl?hang=2").machines["plotter"].url == "sim://grbl?hang=2"
 
 
 def test_everything_lies_below_a_chosen_state_folder(tmp_path: Path) -> None:

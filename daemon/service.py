@@ -1,0 +1,189 @@
+"""The service: puts the rooms together, one thread each, until it is told to end."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from daemon import __version__
+from daemon.config import Machine, Settings, ZPenSettings
+from daemon.control import ControlServer, Order
+from daemon.errors import SettingsError
+from daemon.intake.inbox import Inbox, InboxWatch, readable
+from daemon.jobs.desk import Desk
+from daemon.jobs.drawing import Drawing, OpenMachine
+from daemon.jobs.folder import JobFolders, make_folder
+from daemon.jobs.journal import Journal
+from daemon.jobs.planning import Planning
+from daemon.jobs.pool import Pool
+from daemon.jobs.runner import Runner
+from daemon.machine.open import open_machine
+from daemon.program.file import load_program
+from daemon.program.gcode import Pen, ServoPen, ZPen, lift_lines
+from daemon.status import Diary, StatusBoard
+from firmware_protocol.grbl.ink import PenRule
+from firmware_protocol.session import Event
+
+PLANNER = "daemon.jobs.planner"
+LIFT_WITHIN_S = 25.0
+"""How long an end waits for the pen to be lifted; systemd kills after 30 s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What works on one state folder. Nothing of it runs yet."""
+
+    desk: Desk
+    pool: Pool
+    planning: Planning
+    drawing: Drawing
+    runner: Runner
+    board: StatusBoard
+    diary: Diary
+
+
+@contextmanager
+def parts_of(settings: Settings, *, verbose: bool = False, planner: str = PLANNER) -> Iterator[Parts]:
+    """Everything that works on the state folder, which belongs to us until the block is left.
+
+    Raises SettingsError when another daemon works on it or its programs suit no machine here, and DiskTrouble.
+    """
+    paths, name = settings.paths, settings.machine_name
+    settings.machines[name].check_streamable()
+    for folder in (paths.state_dir, paths.inbox, paths.log_dir, paths.runtime_dir):
+        make_folder(folder)
+    with ExitStack() as at_end:
+        at_end.enter_context(_only_one(paths.state_dir))
+        folders = JobFolders(paths.jobs)
+        diary = at_end.enter_context(closing(Diary(paths.log_dir, paths.jobs, to_stderr=verbose)))
+        board = StatusBoard(paths.status)
+        board.change(machine=name)
+        journal = at_end.enter_context(closing(Journal(paths.journal)))
+        asks, ahead = settings.machines[name].asks_for_sheets, settings.planning.ahead
+        desk = Desk(journal, folders, say=diary.say, show=board.change, asks_for_sheets=asks, ahead=ahead)
+        pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
+        drawing = Drawing(
+            desk,
+            opened=lambda hear: _opened(settings.machines[name], hear),
+            load=load_program,
+            measure=lambda folder: pool.measure(folder, name),
+        )
+        at_end.callback(drawing.close)
+        planning = Planning(desk, pool, name)
+        yield Parts(desk, pool, planning, drawing, Runner(desk, pool, planning, drawing), board, diary)
+
+
+def _opened(machine: Machine, hear: Callable[[Event], None]) -> OpenMachine:
+    return open_machine(
+        machine.url,
+        baud=machine.baud,
+        flow=machine.flow,
+        lift=lift_lines(_pen(machine)),
+        lift_after_restart=machine.lift_after_restart,
+        home=machine.origin == "homed",
+        touches=_touches(machine),
+        heard=hear,
+    )
+
+
+def _pen(machine: Machine) -> Pen:
+    pen = machine.pen
+    if isinstance(pen, ZPenSettings):
+        return ZPen(pen.up_mm, pen.down_mm, pen.plunge_mm_s)
+    return ServoPen(pen.up_s, pen.down_s, pen.dwell_s)
+
+
+def _touches(machine: Machine) -> PenRule:
+    pen = machine.pen
+    if isinstance(pen, ZPenSettings):
+        return PenRule(down_at_mm=pen.down_mm)
+    return PenRule(down_s=pen.down_s, up_s=pen.up_s)
+
+
+@contextmanager
+def _only_one(state_dir: Path) -> Iterator[None]:
+    with (state_dir / "lock").open("a+", encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.seek(0)
+            first = lock.read().strip() or "?"
+            raise SettingsError(
+                f"linedrawd, process {first}, already works on {state_dir}: stop it or give another --state-dir"
+            ) from None
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        yield
+
+
+class Service:
+    """The daemon. `run` returns after `end`, with the pen up and every thread gone."""
+
+    def __init__(self, settings: Settings, parts: Parts) -> None:
+        paths = settings.paths
+        self._parts, self._ended = parts, threading.Event()
+        inbox = Inbox(
+            paths.inbox,
+            settle_s=settings.intake.settle_s,
+            claim=lambda picture: parts.desk.take(picture, readable(picture.name)),
+            refuse=parts.desk.trouble,
+            new_sheet=parts.desk.new_sheet,
+        )
+        self._watch = InboxWatch(inbox, paths.inbox, trouble=parts.desk.trouble)
+        self._control = ControlServer(paths.control, self._obey)
+        self._inbox_dir = paths.inbox
+
+    def run(self) -> None:
+        parts = self._parts
+        parts.diary.say("linedrawd starts", version=__version__, inbox=self._inbox_dir)
+        parts.board.change(state="idle")
+        parts.desk.recover(self._inbox_dir)
+        works = [parts.runner.plan_on, parts.runner.draw_on, self._watch.run, self._control.run, parts.board.run]
+        threads = [threading.Thread(target=work, name=work.__qualname__, daemon=True) for work in works]
+        for thread in threads:
+            thread.start()
+        self._ended.wait()
+        self._end(threads)
+
+    def end(self) -> None:
+        """May be called from any thread and from a signal handler."""
+        self._ended.set()
+
+    def end_on_signals(self) -> None:
+        """SIGTERM and Ctrl-C: feed hold, pen up, end."""
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: self.end())
+
+    def _end(self, threads: list[threading.Thread]) -> None:
+        parts = self._parts
+        parts.runner.end()
+        self._watch.stop()
+        self._control.stop()
+        planning, drawing, inbox, control, board = threads
+        for thread in (drawing, planning, inbox, control):
+            thread.join(LIFT_WITHIN_S)
+        parts.board.change(state="ended", words="linedrawd has ended", pid=0, port="")
+        parts.board.stop()
+        board.join(LIFT_WITHIN_S)
+        parts.diary.say("linedrawd has ended")
+
+    def _obey(self, order: Order) -> str:
+        runner = self._parts.runner
+        self._parts.diary.say("a person says", order=order.order, what=order.job or "-")
+        match order.order:
+            case "next":
+                return runner.new_sheet()
+            case "stop":
+                return runner.stop()
+            case "go":
+                return runner.go()
+            case "cancel":
+                return runner.cancel(order.job)
+        return "linedrawd runs"

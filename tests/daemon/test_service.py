@@ -1,0 +1,198 @@
+"""The daemon as a whole, on a simulated machine: pictures are dropped, drawings come out, and it ends in order."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from daemon.config import Options, Settings, load_settings
+from daemon.control import Order, give_order
+from daemon.errors import SettingsError
+from daemon.jobs.journal import Job
+from daemon.jobs.states import State
+from daemon.service import Parts, Service, parts_of
+from tests.daemon.jobs.test_pool import PLANNER
+
+
+def settings_of(root: Path, *, port: str = "sim://grbl", sheet: str = "auto") -> Settings:
+    file = root / "linedrawd.toml"
+    file.write_text(f"[intake]\nsettle_s = 0.02\n[planning]\nmemory_mb = 256\n[machines.left]\nsheet = '{sheet}'\n")
+    return load_settings(Options(config=file, port=port, state_dir=root / "state"), environment={"HOME": str(root)})
+
+
+class Daemon:
+    def __init__(self, settings: Settings, parts: Parts) -> None:
+        self.settings, self.parts = settings, parts
+
+    def drop(self, name: str, text: str = "good") -> None:
+        (self.settings.paths.inbox / name).write_text(text)
+
+    def wait_for(self, true: Callable[[list[Job]], object]) -> list[Job]:
+        """Sleeps on the desk's own bell, at most half a minute."""
+        desk = self.parts.desk
+        for _ in range(1000):
+            seen, jobs = desk.changes, desk.journal.jobs()
+            if true(jobs):
+                return jobs
+            desk.wait(30.0, since=seen)
+        raise AssertionError(desk.journal.jobs())
+
+    def order(self, order: str, job: str = "") -> str:
+        return give_order(self.settings.paths.control, Order.model_validate({"order": order, "job": job}))
+
+    def folder(self, job: Job) -> Path:
+        return self.parts.desk.folders.path(job.id)
+
+    def status(self) -> dict[str, object]:
+        found: dict[str, object] = json.loads(self.settings.paths.status.read_text())
+        return found
+
+    def log(self) -> str:
+        return (self.settings.paths.log_dir / "linedrawd.log").read_text()
+
+
+@contextmanager
+def running(settings: Settings) -> Iterator[Daemon]:
+    with parts_of(settings, planner=PLANNER) as parts:
+        service = Service(settings, parts)
+        thread = Thread(target=service.run)
+        thread.start()
+        try:
+            yield Daemon(settings, parts)
+        finally:
+            service.end()
+            thread.join(20)
+        assert not thread.is_alive()
+
+
+def ended(jobs: list[Job]) -> bool:
+    return bool(jobs) and all(job.state in (State.DONE, State.FAILED, State.INTERRUPTED) for job in jobs)
+
+
+def test_what_is_dropped_is_drawn_and_its_ink_is_kept(tmp_path: Path) -> None:
+    settings = settings_of(tmp_path)
+    settings.paths.inbox.mkdir(parents=True)
+    (settings.paths.inbox / "before the start.png").write_text("good")
+    with running(settings) as daemon:
+        (job,) = daemon.wait_for(ended)
+        ink = json.loads((daemon.folder(job) / "ink.json").read_text())["strokes"]
+    assert (job.state, job.name) == (State.DONE, "before the start.png")
+    drawn = [[stroke[0], stroke[-1]] for stroke in ink if len(stroke) > 1]
+    assert drawn == [[pytest.approx([1, 1]), pytest.approx([9, 1])], [pytest.approx([1, 5]), pytest.approx([9, 5])]]
+
+
+def test_a_bad_picture_fails_visibly_and_never_stops_the_next_one(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path)) as daemon:
+        daemon.drop("bad.png", "bad")
+        daemon.wait_for(ended)
+        daemon.drop("good.png")
+        bad, good = daemon.wait_for(lambda jobs: len(jobs) == 2 and ended(jobs))
+        assert (bad.state, good.state) == (State.FAILED, State.DONE)
+        assert "source.png is no picture: drop another" in daemon.log()
+        assert "source.png is no picture: drop another" in (daemon.folder(bad) / "job.log").read_text()
+    assert daemon.status()["last_error"] == "source.png is no picture: drop another"
+
+
+def test_two_hundred_pictures_at_once_are_all_claimed_in_order(tmp_path: Path) -> None:
+    settings = settings_of(tmp_path, port="/dev/does-not-exist")
+    settings.paths.inbox.mkdir(parents=True)
+    for number in range(200):
+        path = settings.paths.inbox / f"{number:03d}.png"
+        path.write_text("good")
+        os.utime(path, ns=(number, number))
+    with running(settings) as daemon:
+        jobs = daemon.wait_for(lambda jobs: len(jobs) == 200)
+    assert [job.name for job in jobs] == [f"{number:03d}.png" for number in range(200)]
+    assert list(settings.paths.inbox.iterdir()) == []
+
+
+def test_without_a_machine_the_daemon_keeps_running_and_says_what_it_waits_for(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path, port="/dev/does-not-exist")) as daemon:
+        daemon.drop("a.png")
+        (job,) = daemon.wait_for(lambda jobs: jobs and jobs[0].state is State.WAITING)
+        assert daemon.order("ping") == "linedrawd runs"
+        assert daemon.parts.board.now.words == job.words
+    assert "/dev/does-not-exist" in job.words
+
+
+@pytest.mark.parametrize("fault", ["unplug=1.5", "hang=1.5", "brownout=1.5", "limit=1.5"])
+def test_a_machine_that_fails_in_mid_job_interrupts_it_and_nothing_starts_until_go(tmp_path: Path, fault: str) -> None:
+    with running(settings_of(tmp_path, port=f"sim://grbl?{fault}")) as daemon:
+        daemon.drop("a.png")
+        daemon.wait_for(ended)
+        daemon.drop("b.png")
+        first, second = daemon.wait_for(lambda jobs: jobs[1:] and jobs[1].state is State.PLANNED)
+        assert first.state is State.INTERRUPTED
+        assert "of 2 strokes 0 are certainly drawn" in first.words
+        assert daemon.parts.desk.held
+    assert second.state is State.PLANNED
+    assert daemon.status()["held"]
+
+
+def test_one_drawing_a_sheet_until_a_file_says_next(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path, sheet="ask")) as daemon:
+        daemon.drop("a.png")
+        daemon.wait_for(ended)
+        daemon.drop("b.png")
+        jobs = daemon.wait_for(lambda jobs: jobs[1:] and jobs[1].state is State.WAITING)
+        assert "new sheet" in jobs[1].words
+        daemon.drop("NEXT", "")
+        daemon.wait_for(ended)
+        daemon.drop("c.png")
+        daemon.wait_for(lambda jobs: jobs[2:] and jobs[2].state is State.WAITING)
+        daemon.order("next")
+        daemon.wait_for(ended)
+
+
+def test_stop_freezes_the_queue_and_go_frees_it(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path)) as daemon:
+        daemon.order("stop")
+        daemon.drop("a.png")
+        daemon.wait_for(lambda jobs: jobs and jobs[0].state is State.PLANNED)
+        assert daemon.parts.board.now.held == "a person stopped the machine"
+        daemon.order("go")
+        daemon.wait_for(ended)
+
+
+def test_an_end_in_mid_drawing_lifts_the_pen_and_leaves_the_job_interrupted(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path, port="sim://grbl?speed=0.5")) as daemon:
+        daemon.drop("a.png")
+        daemon.wait_for(lambda jobs: jobs and jobs[0].state is State.DRAWING)
+    log = daemon.log()
+    assert "state=interrupted" in log
+    assert "the pen is up" in log
+    assert (daemon.status()["state"], daemon.status()["pid"]) == ("ended", 0)
+
+
+def test_a_second_daemon_on_the_same_folder_is_refused_and_names_the_first(tmp_path: Path) -> None:
+    settings = settings_of(tmp_path)
+    with (
+        parts_of(settings, planner=PLANNER),
+        pytest.raises(SettingsError, match=f"process {os.getpid()}, already works on .*--state-dir"),
+        parts_of(settings, planner=PLANNER),
+    ):
+        pass
+
+
+def test_the_daemons_own_process_loads_no_network_no_vision_and_no_arrays() -> None:
+    program = "import sys, daemon.cli.__main__; print({'onnxruntime', 'cv2', 'numpy', 'torch'} & set(sys.modules))"
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert found.stdout == "set()\n"
+
+
+def test_a_run_leaves_no_file_outside_its_folders(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path)) as daemon:
+        daemon.drop("a.png")
+        daemon.wait_for(ended)
+    assert {path.name for path in tmp_path.iterdir()} == {"linedrawd.toml", "state"}
+    assert {path.name for path in (tmp_path / "state").iterdir()} == {
+        "inbox", "jobs", "log", "run", "lock", "journal.sqlite",
+    }  # fmt: skip
