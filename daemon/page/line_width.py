@@ -84,7 +84,6 @@ def _scale(width_px: float, side_px: int) -> float:
     if side_px * scale > MOST_SIDE_PX:
         narrowest = min(1.0, NARROWEST_PX / width_px)
         scale = max(MOST_SIDE_PX / side_px, min(scale, narrowest))
-        scale = min(scale, 1.0) if side_px > MOST_SIDE_PX else scale
     return scale
 
 
