@@ -46,7 +46,7 @@ class Link:
     def draw(self, lines: Sequence[JobLine]) -> Ended:
         """Send a job and wait for its end, whatever it is; an unplugged machine is an end too.
 
-        A `stop` that was asked for before is obeyed at once. KeyboardInterrupt stops the job, waits until the pen is
+        A `stop` that was asked for before is obeyed before a line is sent. KeyboardInterrupt stops the job, waits until the pen is
         up, and is raised again; a second one gives up waiting. Raises MachineFault when no job can be started.
         """
         try:
@@ -108,10 +108,11 @@ class Link:
         raise AssertionError("a job that runs has an end")
 
     def _events(self, *, until: float | None) -> Iterator[Event | None]:
-        """Every event, and None before each wait, which is the moment to look at what other threads have asked for."""
+        """Every event, and None before anything is sent: the moment to look at what other threads have asked for."""
         # What came while nobody listened is heard before anything is judged to be late.
         data = self._transport.read(self._transport.now())
         while True:
+            yield None
             now = self._transport.now()
             events = [*self._session.receive(data, now), *self._session.expire(now)]
             fault = self._write(self._session.data_to_send(now))
@@ -120,7 +121,6 @@ class Link:
                 yield event
             if fault is not None:
                 raise fault
-            yield None
             if until is not None and now >= until:
                 return
             data = self._transport.read(self._wait_until(until))

@@ -43,16 +43,17 @@ class _Wire(Protocol):
     def close(self) -> None: ...
 
 
-def open_serial(url: str, *, baud: int = 115200) -> Transport:
+def open_serial(url: str, *, baud: int = 115200, write_within_s: float = WRITE_WITHIN_S) -> Transport:
     """Open a port for this process alone. url: serial:///dev/ttyUSB0, a bare path, or tcp://host:port.
 
-    Opening a serial port resets most boards (DTR). Raises NoMachine when it is missing, in use or not allowed.
+    Opening a serial port resets most boards (DTR). write_within_s: a port that takes no byte for so long is a fault.
+    Raises NoMachine when it is missing, in use or not allowed.
     """
     parts = urlsplit(url)
     if parts.scheme == "tcp":
-        return _Port(url, _connect(url))
+        return _Port(url, _connect(url), write_within_s)
     if parts.scheme in {"serial", ""} and parts.path:
-        return _Port(parts.path, _open(parts.path, baud))
+        return _Port(parts.path, _open(parts.path, baud), write_within_s)
     raise NoMachine(f"{url} is no port: give serial:///dev/ttyUSB0, a path, or tcp://host:port")
 
 
@@ -67,13 +68,14 @@ def _open(path: str, baud: int) -> _Wire:
     try:
         port: _Wire = serial.Serial(path, baudrate=baud, timeout=0, exclusive=True)
     except serial.SerialException as fault:
-        raise NoMachine(_why_not(path, fault.errno)) from fault
+        raise NoMachine(why_not_opened(path, fault.errno)) from fault
     except ValueError as fault:
         raise NoMachine(f"{path} does not do {baud} baud: set another baud rate") from fault
     return port
 
 
-def _why_not(path: str, number: int | None) -> str:
+def why_not_opened(path: str, number: int | None) -> str:
+    """What an error number of the system means for a person who wants to open `path`."""
     if number == errno.ENOENT:
         return f"there is no port {path}: plug the machine in, or name another port"
     if number in {errno.EACCES, errno.EPERM}:
@@ -100,8 +102,8 @@ def _connect(url: str) -> _Wire:
 class _Port:
     """A `Transport` on a file descriptor; its clock is the monotonic one."""
 
-    def __init__(self, name: str, wire: _Wire) -> None:
-        self._name = name
+    def __init__(self, name: str, wire: _Wire, write_within_s: float) -> None:
+        self._name, self._write_within_s = name, write_within_s
         self._wire: _Wire | None = wire
         self._fd = wire.fileno()
         self._woken, self._waker = os.pipe()
@@ -164,7 +166,7 @@ class _Port:
         try:
             return os.write(self._fd, data)
         except BlockingIOError:
-            _, writable, _ = select.select([], [self._fd], [], WRITE_WITHIN_S)
+            _, writable, _ = select.select([], [self._fd], [], self._write_within_s)
             if writable:
                 return 0
             raise MachineFault(f"{self._name} takes no more bytes: switch the machine off and on") from None
