@@ -46,8 +46,9 @@ class Link:
     def draw(self, lines: Sequence[JobLine]) -> Ended:
         """Send a job and wait for its end, whatever it is; an unplugged machine is an end too.
 
-        A `stop` that was asked for before is obeyed before a line is sent. KeyboardInterrupt stops the job, waits until the pen is
-        up, and is raised again; a second one gives up waiting. Raises MachineFault when no job can be started.
+        A `stop` that was asked for before is obeyed before a line is sent. KeyboardInterrupt stops the job, waits
+        until the pen is up, and is raised again; a second one gives up waiting. Raises MachineFault when no job can be
+        started, or an interrupted one does not end.
         """
         try:
             self._session.start(lines, self._transport.now())
