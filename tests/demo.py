@@ -32,7 +32,7 @@ from daemon.report import canvas
 from daemon.report.contact_sheet import Row, contact_sheet
 from daemon.report.preview import in_words
 from daemon.report.report import from_json
-from daemon.toolpath.place import place, placement
+from daemon.toolpath.place import invert, place
 
 DRAWINGS = Path(__file__).parent / "drawings"
 KINDS = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".pbm", ".pgm", ".ppm"}
@@ -170,13 +170,7 @@ def row_of(settings: Settings, job: Seen) -> Row:
         return Row(job.name, given, [], [], trouble=job.words)
     report = from_json((folder / "report.json").read_text())
     planned = json.loads((folder / "strokes.json").read_text())
-    to_mm = placement(
-        planned["width_px"],
-        planned["height_px"],
-        box_mm=settings.sheet.box_mm,
-        box_origin_mm=settings.sheet.box_origin_mm,
-    )
-    to_px = np.asarray(cv2.invertAffineTransform(to_mm), float)
+    to_px = invert(np.array(report.from_px))
     ink = json.loads((folder / "ink.json").read_text())
     return Row(
         job.name,
@@ -185,7 +179,7 @@ def row_of(settings: Settings, job: Seen) -> Row:
         [place(np.array(stroke, float), to_px) for stroke in ink["strokes"]],
         f1=report.fidelity.f1,
         seconds=report.real_s,
-        line_width_px=report.line_width_px * report.given_width_px / report.page_width_px,
+        line_width_px=report.line_width_px,
     )
 
 

@@ -24,7 +24,7 @@ class Report:
     page_width_px: int
     page_height_px: int
     line_width_px: float
-    """Of the lines on the page, full width."""
+    """Full width of the lines in the given picture."""
     vertices: int
     edges: int
     strokes: int
@@ -85,7 +85,7 @@ def executed_report(planned: Report, fidelity: Fidelity, *, real_s: float) -> Re
 
 
 def to_json(report: Report) -> str:
-    """report.json: every number to four decimals at most, one key a line."""
+    """report.json: figures to four decimals, `from_px` to all of them."""
     return json.dumps(_rounded(asdict(report)), indent=2, allow_nan=False) + "\n"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,6 +40,11 @@ def test_a_planned_report_counts_what_it_was_given() -> None:
     assert (told["vertices"], told["edges"], told["strokes"]) == (2, 1, 1)
     assert (told["drawn_mm"], told["travelled_mm"]) == (50.0, 40.0)
     assert told["stage_s"] == {"decode": 0.0012, "vision": 0.2}
+
+
+def test_the_way_to_the_machine_is_kept_to_the_last_decimal() -> None:
+    from_px = [[1 / 3, 0.0, 25 + 1 / 7], [0.0, -1 / 3, 89 - 1 / 7]]
+    assert from_json(to_json(replace(example(), from_px=from_px))).from_px == from_px
 
 
 def test_until_it_is_drawn_fidelity_is_that_of_the_plan() -> None:
