@@ -23,14 +23,13 @@ from daemon.jobs.journal import Journal
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
-from daemon.machine.open import open_machine
+from daemon.machine.open import check_url, open_machine
 from daemon.program.file import load_program
 from daemon.program.gcode import Pen, ServoPen, ZPen, lift_lines
 from daemon.status import Diary, StatusBoard
 from firmware_protocol.grbl.ink import PenRule
 from firmware_protocol.session import Event
 
-PLANNER = "daemon.jobs.planner"
 LIFT_WITHIN_S = 25.0
 """How long an end waits for the pen to be lifted; systemd kills after 30 s."""
 
@@ -49,13 +48,14 @@ class Parts:
 
 
 @contextmanager
-def parts_of(settings: Settings, *, verbose: bool = False, planner: str = PLANNER) -> Iterator[Parts]:
+def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None = None) -> Iterator[Parts]:
     """Everything that works on the state folder, which belongs to us until the block is left.
 
     Raises SettingsError when another daemon works on it or its programs suit no machine here, and DiskTrouble.
     """
     paths, name = settings.paths, settings.machine_name
     settings.machines[name].check_streamable()
+    check_url(settings.machines[name].url)
     for folder in (paths.state_dir, paths.inbox, paths.log_dir, paths.runtime_dir):
         make_folder(folder)
     with ExitStack() as at_end:

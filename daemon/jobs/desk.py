@@ -48,6 +48,7 @@ class Desk:
         """Counts what has changed, so that a change between a look and a `wait` is not slept over."""
         self._asks_for_sheets, self._ahead = asks_for_sheets, ahead
         self._cancelled: set[str] = set()
+        self._troubled = ("", "")
         self._changed = threading.Condition(threading.RLock())
 
     def recover(self, inbox: Path) -> None:
@@ -84,6 +85,7 @@ class Desk:
     def step(self, job_id: str, state: State, words: str = "", **figures: Any) -> None:
         """Record the step and tell it. Raises DiskTrouble; the step has then not happened."""
         self.journal.step(job_id, state, words)
+        self._troubled = ("", "")
         level = _LOUD.get(state, logging.INFO)
         self.say(words or f"the job is {state.value}", job=job_id, level=level, state=state.value, **figures)
         if state in (State.FAILED, State.INTERRUPTED):
@@ -102,9 +104,11 @@ class Desk:
                     return None
 
     def trouble(self, words: str, *, job: str = "") -> None:
-        """Say an error, once for as long as it stays the same."""
-        self.say(words, job=job, level=logging.ERROR)
-        self.show(last_error=words)
+        """Say an error, once until something has gone well again."""
+        if (words, job) != self._troubled:
+            self._troubled = (words, job)
+            self.say(words, job=job, level=logging.ERROR)
+            self.show(last_error=words)
 
     def begin_planning(self) -> Job | None:
         """The next job for the worker, now in planning; None while enough is planned."""

@@ -19,6 +19,7 @@ from daemon import errors
 from daemon.config import Settings
 from daemon.errors import PlanningFailed
 
+PLANNER = "daemon.jobs.planner"
 _ROOT = Path(daemon.__file__).parent.parent
 _LAST_WORDS_BYTES = 4096
 
@@ -30,8 +31,8 @@ class Pool:
     memory or out of time; the next call starts a new worker. `interrupt` and `close` may be called from any thread.
     """
 
-    def __init__(self, settings: Settings, *, planner: str = "daemon.jobs.planner") -> None:
-        self._settings, self._planner = settings, planner
+    def __init__(self, settings: Settings, *, planner: str | None = None) -> None:
+        self._settings, self._planner = settings, planner or PLANNER
         self._lock = threading.Lock()
         self._worker: _Worker | None = None
         self._closed = False

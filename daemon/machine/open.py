@@ -8,7 +8,7 @@ from typing import Literal
 from daemon.machine.link import Link
 from daemon.machine.ports import find_grbl
 from daemon.machine.serial_port import adapters, open_serial
-from daemon.machine.simulated import SimulatedTransport, open_simulated
+from daemon.machine.simulated import SimulatedTransport, open_simulated, simulator_of
 from daemon.machine.transport import Transport
 from daemon.shapes import Program
 from firmware_protocol.errors import ProtocolError
@@ -91,11 +91,17 @@ def open_machine(
 
     url: auto (the one GRBL controller on the USB), serial://, tcp:// or sim://. lift: lines that raise the pen.
     touches: when the pen of a simulated machine is on the sheet. heard: is told every event, in the drawing thread.
-    Raises NoMachine, and SettingsError for a simulated machine that there is not.
+    Raises NoMachine, and SettingsError as `check_url` does.
     """
     transport = _transport(url, baud, touches)
     session = GrblSession(now=transport.now(), flow=flow, lift=lift, lift_after_restart=lift_after_restart, home=home)
     return OpenedMachine(transport, session, Link(transport, session, heard=heard))
+
+
+def check_url(url: str) -> None:
+    """Raises SettingsError for a simulated machine that there is not; ports are looked for when they are opened."""
+    if url.startswith("sim://"):
+        simulator_of(url)
 
 
 def _transport(url: str, baud: int, touches: PenRule) -> Transport:

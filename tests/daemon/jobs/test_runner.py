@@ -295,6 +295,15 @@ def test_a_drawing_that_cannot_be_recorded_is_not_forgotten(bench: Bench) -> Non
     assert any("cannot be written" in words and "free the disk" in words for words, _ in bench.said)
 
 
+def test_a_trouble_that_stays_is_said_once(bench: Bench) -> None:
+    for _ in range(3):
+        bench.desk.trouble("the disk is full: free it")
+    bench.drop()
+    bench.planning.turn()
+    bench.desk.trouble("the disk is full: free it")
+    assert [words for words, _ in bench.said].count("the disk is full: free it") == 2
+
+
 def test_a_full_disk_while_a_job_is_written_loses_no_picture(bench: Bench) -> None:
     bench.drop("fill.png", "fill")
     bench.drop("good.png")

@@ -1,0 +1,62 @@
+"""The command line: which words lead where, and which error to which exit code."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+
+from daemon import __version__
+from daemon.cli import control, draw, models, plan, serve, simulate, status
+from daemon.cli.options import add_machine, add_places
+from daemon.errors import LinedrawError
+
+EXAMPLES = """examples:
+  linedrawd --device grbl                  # the daemon: finds the port, draws what is dropped into the inbox
+  linedrawd --device sim --state-dir try   # the same on a simulated machine; drop pictures into try/inbox
+  linedrawd plan house.png -o plans        # what would be drawn, without a machine
+  linedrawd draw house.png --device grbl   # one picture now
+  linedrawd next                           # a new sheet is in
+  linedrawd status                         # what it does now
+
+exit codes: 0 done, 1 some pictures failed, 2 usage or settings, 3 no machine (draw), 4 machine fault
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command and return its exit code; errors are one sentence on stderr."""
+    # onnxruntime reports home from its first import on unless this is set before it.
+    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+    args = _parser().parse_args(arguments)
+    try:
+        return int(args.run(args))
+    except LinedrawError as error:
+        print(f"linedrawd: {error}", file=sys.stderr)
+        return error.exit_code
+    except BrokenPipeError:
+        # Whoever reads has had enough, as in `linedrawd jobs | head`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="linedrawd",
+        description="Draws line drawings with a pen plotter: drop a picture into a folder, the machine draws it.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"linedrawd {__version__}")
+    add_machine(parser)
+    add_places(parser)
+    parser.set_defaults(run=serve.run)
+    subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
+    for group in (plan, draw, control, status, models, simulate):
+        group.add_parser(subparsers)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

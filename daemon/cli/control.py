@@ -1,0 +1,39 @@
+"""`linedrawd next`, `stop`, `go`, `cancel`: orders to the running daemon."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any, Literal
+
+from daemon.cli.options import add_places, settings_of
+from daemon.control import Order, give_order
+
+_ORDERS: dict[Literal["next", "stop", "go"], str] = {
+    "next": "a new sheet is in: draw the next picture",
+    "stop": "stop the machine now, pen up; no further job starts until `go`",
+    "go": "jobs may start again, after `stop` or a fault of the machine",
+}
+
+
+def add_parser(subparsers: Any) -> None:
+    for order, words in _ORDERS.items():
+        parser = subparsers.add_parser(order, help=words, description=words[0].upper() + words[1:] + ".")
+        add_places(parser)
+        parser.set_defaults(run=run, order=Order(order=order))
+    parser = subparsers.add_parser(
+        "cancel",
+        help="drop a job",
+        description="Drop a job. One that is being drawn is stopped, pen up.",
+        epilog="example:\n  linedrawd cancel 12        # the job that `linedrawd jobs` lists as 000012-...",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("job", metavar="JOB", help="its id, or the number at its beginning")
+    add_places(parser)
+    parser.set_defaults(run=run, order=None)
+
+
+def run(args: argparse.Namespace) -> int:
+    """0 when the daemon did it. Raises LinedrawError when it refuses or does not run."""
+    order = args.order or Order(order="cancel", job=args.job)
+    print(give_order(settings_of(args).paths.control, order))
+    return 0

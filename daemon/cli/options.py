@@ -1,0 +1,48 @@
+"""Options that many commands share, and the settings they lead to."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from daemon.config import Options, Settings, load_settings
+
+_PATHS = ("config", "state_dir", "inbox", "log_dir")
+
+
+def add_places(parser: argparse.ArgumentParser) -> None:
+    """Where the settings are and where everything lies."""
+    group = parser.add_argument_group("places")
+    group.add_argument("--config", metavar="FILE", default=argparse.SUPPRESS, help="settings (TOML)")
+    group.add_argument("--state-dir", metavar="DIR", default=argparse.SUPPRESS, help="inbox, jobs and journal")
+    group.add_argument("--inbox", metavar="DIR", default=argparse.SUPPRESS, help="where pictures are dropped")
+    group.add_argument("--log-dir", metavar="DIR", default=argparse.SUPPRESS, help="where linedrawd.log is written")
+
+
+def add_machine(parser: argparse.ArgumentParser) -> None:
+    """Which machine, and how to reach it."""
+    group = parser.add_argument_group("machine")
+    group.add_argument(
+        "--device",
+        choices=["grbl", "emco", "dobot", "sim"],
+        default=argparse.SUPPRESS,
+        help="sim is a simulated grbl; emco and dobot come with a later version",
+    )
+    group.add_argument(
+        "--port",
+        metavar="URL",
+        default=argparse.SUPPRESS,
+        help="auto, serial:///dev/ttyUSB0, tcp://HOST:PORT, sim://grbl; a bare path is serial",
+    )
+    group.add_argument("-v", "--verbose", action="store_true", default=argparse.SUPPRESS, help="show the log on stderr")
+
+
+def settings_of(args: argparse.Namespace, *, machine_needed: bool = False) -> Settings:
+    """The settings of this command line. Raises SettingsError."""
+    paths = {name: Path(getattr(args, name)) for name in _PATHS if getattr(args, name, None)}
+    device, port = getattr(args, "device", None), getattr(args, "port", None)
+    return load_settings(Options(**paths, device=device, port=port), machine_needed=machine_needed)
+
+
+def verbose(args: argparse.Namespace) -> bool:
+    return bool(getattr(args, "verbose", False))

@@ -1,0 +1,18 @@
+"""`linedrawd --device grbl`: the daemon."""
+
+from __future__ import annotations
+
+import argparse
+
+from daemon.cli.options import settings_of, verbose
+from daemon.service import Service, parts_of
+
+
+def run(args: argparse.Namespace) -> int:
+    """Until SIGTERM. Without a machine it keeps running and waits for one."""
+    settings = settings_of(args, machine_needed=True)
+    with parts_of(settings, verbose=verbose(args)) as parts:
+        service = Service(settings, parts)
+        service.end_on_signals()
+        service.run()
+    return 0

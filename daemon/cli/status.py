@@ -1,0 +1,73 @@
+"""`linedrawd status` and `jobs`: what it does now and what it has done, read from files only."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from daemon.cli.options import add_places, settings_of
+from daemon.errors import LinedrawError
+from daemon.status import JOB_LOG_NAME
+
+_LINE = re.compile(r"(?P<time>\S+) \w+ \S+ (?P<words>.*?) state=(?P<state>\w+)")
+_NAME = re.compile(r' name=("(?:[^"\\]|\\.)*"|\S+)')
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser("status", help="what the daemon does now", description="What the daemon does now.")
+    add_places(parser)
+    parser.set_defaults(run=status)
+    parser = subparsers.add_parser(
+        "jobs",
+        help="what it has done",
+        description="Every job: its id, its state, since when, the name of its picture, and what was said of it.",
+        epilog="example:\n  linedrawd jobs | grep -w failed",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_places(parser)
+    parser.set_defaults(run=jobs)
+
+
+def status(args: argparse.Namespace) -> int:
+    """0 when a daemon runs, 1 when none does; its last status is printed all the same."""
+    path = settings_of(args).paths.status
+    try:
+        said = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise LinedrawError(
+            f"no daemon has left a status at {path} ({error}): start it or give its --state-dir"
+        ) from None
+    runs = bool(said["pid"]) and Path(f"/proc/{said['pid']}").exists()
+    if not runs:
+        print("no daemon runs; this is its last status:")
+    for key, value in said.items():
+        if value not in ("", None, 0, 0.0) or key == "state":
+            print(f"{key.replace('_', ' '):14} {value}")
+    return 0 if runs else 1
+
+
+def jobs(args: argparse.Namespace) -> int:
+    root = settings_of(args).paths.jobs
+    for folder in sorted(os.listdir(root)) if root.is_dir() else []:
+        for line in _job(root / folder):
+            print(line)
+    return 0
+
+
+def _job(folder: Path) -> Iterator[str]:
+    """One line for a job, none for a folder that is no job or whose log cannot be read."""
+    try:
+        log = (folder / JOB_LOG_NAME).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return
+    steps = [found for found in map(_LINE.match, log) if found]
+    if steps:
+        named = _NAME.search(log[0])
+        name = named[1] if named else folder.name
+        last = steps[-1]
+        yield f"{folder.name:32} {last['state']:12} {last['time']}  {name}  {last['words']}"
