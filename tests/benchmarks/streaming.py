@@ -18,6 +18,8 @@ from firmware_protocol.grbl.session import GrblSession
 
 LINES = 3000
 _LIFT = ("G90 G21", "G0 Z5")
+# A brisk machine: on one that accelerates slowly its motion is the limit, not the wire.
+_MACHINE = "sim://grbl?110=6000&111=6000&120=500&121=500"
 _READY_WITHIN_S = 10.0
 
 
@@ -25,7 +27,6 @@ def show() -> None:
     """Print a line for each kind of program."""
     print(f"{LINES} lines into the simulated GRBL, 115200 baud, real time")
     print(f"{'':22}{'lines/s':>9}{'CPU share':>11}{'CPU us/line':>13}   ended")
-    # Steps of 0.01 mm need no more than 4 mm/s for 400 lines a second: the wire is what limits, not the motion.
     moving = [f"G1 X{10 + i / 100:.3f} Y{20 + i / 200:.3f}" for i in range(LINES - 1)]
     programs = {"with motion": ["G21 G90 F1200", *moving], "without motion": ["G21 G90 G1 F1200 S123"] * LINES}
     with controller() as port:
@@ -53,7 +54,15 @@ def controller() -> Iterator[Path]:
     """`linedrawd simulate grbl` in a process of its own; the path of its pseudo terminal."""
     with tempfile.TemporaryDirectory() as folder:
         port = Path(folder) / "grbl"
-        command = [str(Path(sys.executable).with_name("linedrawd")), "simulate", "grbl", "--pty", str(port)]
+        command = [
+            str(Path(sys.executable).with_name("linedrawd")),
+            "simulate",
+            "grbl",
+            "--url",
+            _MACHINE,
+            "--pty",
+            str(port),
+        ]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         try:
             wait_for(port, process)
