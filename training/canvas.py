@@ -13,9 +13,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from training.curves import curves, smooth
+from training.curves import curves, smooth, splines
 from training.quickdraw import Sketches
 from training.render import BORDER_PX, CANVAS_PX, Points, Sample, fit, polylines
+
+_SIMPLIFIED, _RAW = 0, 1
+DRAWN_BY_RULE = 0.3
+"""Share of the curved sketches that are splines: rounder than what a mouse draws."""
 
 Random = np.random.Generator
 
@@ -46,12 +50,12 @@ class Canvases:
         return stack([self.sample(first + k, curved=curved, canvas_px=canvas_px) for k in range(count)])
 
     def _paper(self, random: Random, canvas_px: int) -> Sample:
-        strokes = fit([t for s in self._sketches(0, random) for t in s], canvas_px, canvas_px - 2 * BORDER_PX)
+        strokes = fit([t for s in self._sketches(_SIMPLIFIED, random) for t in s], canvas_px, canvas_px - 2 * BORDER_PX)
         return polylines(strokes, canvas_px)
 
     def _curved(self, random: Random, canvas_px: int) -> Sample:
         sigma = random.uniform(0.8, 2.0)
-        strokes = [smooth(t, sigma) for s in self._sketches(1, random) for t in s if len(t) > 1]
+        strokes = [smooth(t, sigma) for s in self._sketches(_RAW, random) for t in s if len(t) > 1]
         if not strokes:
             return self._paper(random, canvas_px)
         zoom = random.uniform(1.2, 2.5) if random.random() < 0.35 else random.uniform(0.5, 1.0)
@@ -65,11 +69,17 @@ class Canvases:
     def _sketches(self, source: int, random: Random) -> list[list[Points]]:
         """One, two or three sketches turned, mirrored and stretched, each in a unit box moved and scaled at random."""
         count = int(random.choice([1, 2, 3], p=[0.5, 0.3, 0.2]))
-        picks = np.searchsorted(self._cumulated[source], random.random(count))
-        return [self._turned(self._sources[source][min(k, len(self._sources[source]) - 1)], random) for k in picks]
+        return [self._turned(self._sketch(source, random), random) for _ in range(count)]
+
+    def _sketch(self, source: int, random: Random) -> Sequence[Points]:
+        if source == _RAW and random.random() < DRAWN_BY_RULE:
+            return splines(random)
+        sketches = self._sources[source]
+        pick = int(np.searchsorted(self._cumulated[source], random.random()))
+        return sketches[min(pick, len(sketches) - 1)]
 
     @staticmethod
-    def _turned(strokes: Sequence[NDArray[np.float32]], random: Random) -> list[Points]:
+    def _turned(strokes: Sequence[NDArray[np.floating]], random: Random) -> list[Points]:
         angle, stretch = random.uniform(0, 2 * np.pi), np.exp(random.uniform(-0.3, 0.3, 2))
         cos, sin = np.cos(angle), np.sin(angle)
         matrix = np.array([[cos, -sin], [sin, cos]]) * stretch * random.choice([-1, 1], 2)

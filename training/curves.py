@@ -56,6 +56,26 @@ def sharp_bends(even: Points) -> NDArray[np.intp]:
     return found + k
 
 
+def splines(random: np.random.Generator) -> list[Points]:
+    """Round shapes as an illustrator draws them: 2 to 6 open or closed smooth curves in a unit square."""
+    return [_spline(random) for _ in range(random.integers(2, 7))]
+
+
+def _spline(random: np.random.Generator) -> Points:
+    """A circle's harmonics, or a walk of smooth turns: 160 points."""
+    t = np.linspace(0.0, 1.0, 160)
+    centre, size = random.random(2), random.uniform(0.08, 0.5)
+    if random.random() < 0.4:
+        angle = 2 * np.pi * t * random.choice([1.0, random.uniform(0.2, 1.0)]) + random.uniform(0, 2 * np.pi)
+        radius = size * (1 + random.uniform(0, 0.3) * np.cos(random.integers(2, 6) * angle + random.uniform(0, 6)))
+        return centre + radius[:, None] * np.stack([np.cos(angle), random.uniform(0.4, 1.0) * np.sin(angle)], axis=1)
+    waves = np.arange(1, 5)
+    heading = random.uniform(0, 2 * np.pi) + np.sin(np.outer(t, waves * np.pi) + random.uniform(0, 6, 4)) @ (
+        random.normal(0, 1.6, 4) / waves
+    )
+    return centre + size * np.cumsum(np.stack([np.cos(heading), np.sin(heading)], axis=1), axis=0) / 80
+
+
 def resample(points: Points, step_px: float) -> Points:
     """Points at about equal distances along the polyline, both ends kept."""
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])

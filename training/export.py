@@ -12,9 +12,12 @@ import os
 os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 
 import argparse
+import hashlib
+import json
 import logging
 import tempfile
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +32,9 @@ from torch import nn
 
 from training import quickdraw
 from training.canvas import Canvases
-from training.network import MirrorUNet, Shape
+from training.measure import CLASSES
+from training.network import MirrorUNet, Shape, level_sizes
+from training.render import CANVAS_PX
 
 OPSET = 18
 CALIBRATION_PAGES = 48
@@ -155,12 +160,35 @@ def quantise(model: onnx.ModelProto, pages: CalibrationDataReader, path: Path) -
 
 
 def load(checkpoint: Path) -> MirrorUNet:
-    """The averaged weights of a checkpoint. Raises FileNotFoundError, or RuntimeError when they do not fit."""
+    """The settled weights of a checkpoint. Raises FileNotFoundError, or RuntimeError when they do not fit."""
     state = torch.load(checkpoint, map_location="cpu")
     shape = dict(state["config"]["shape"])
     net = MirrorUNet(Shape(**(shape | {"channels": tuple(shape["channels"])})))
-    net.load_state_dict({k: v.float() if v.is_floating_point() else v for k, v in state["average"].items()})
+    net.load_state_dict({k: v.float() if v.is_floating_point() else v for k, v in state["settled"].items()})
     return net.eval()
+
+
+def write_manifest(model: Path, checkpoint: Path) -> None:
+    """NAME.json beside NAME.onnx: what the file is. training.evaluate --manifest adds how good it is."""
+    state = torch.load(checkpoint, map_location="cpu")
+    config, progress = state["config"], state["progress"]
+    shape = Shape(**(dict(config["shape"]) | {"channels": tuple(config["shape"]["channels"])}))
+    manifest = {
+        "file": model.name,
+        "sha256": hashlib.sha256(model.read_bytes()).hexdigest(),
+        "input": "ink: float32 (pages, 1, height, width), ink 1, paper 0",
+        "output": "logits: float32 (pages, 3, height, width)",
+        "labels": list(CLASSES),
+        "tile_px": CANVAS_PX,
+        "legal_sizes_px": [size for size in range(CANVAS_PX, 400) if level_sizes(shape, size)],
+        "net": asdict(shape),
+        "run": {k: v for k, v in config.items() if k not in ("shape", "data", "raw", "start")},
+        "trained": {"images": progress["images"], "seconds": round(progress["seconds"])},
+        "data": "Quick, Draw! (Google), simplified and raw drawings",
+        "data_licence": "CC BY 4.0",
+        "figures": {},
+    }
+    model.with_suffix(".json").write_text(json.dumps(manifest, indent=1) + "\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -180,6 +208,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     raw = quickdraw.read([given.raw], limit=2000) if given.raw else None
     pages = Pages(Canvases(simplified, raw, seed=7), CALIBRATION_PAGES, 0.5 if raw else 0.0)
     quantise(model, pages, given.out)
+    write_manifest(given.out, given.checkpoint)
     print(f"{given.out}: {given.out.stat().st_size / 1e6:.2f} MB")
     return 0
 

@@ -29,3 +29,9 @@ def place(points: Points, from_px: Affine) -> Points:
     """points: (N, 2) in px; from_px: (2, 3). Returns (N, 2) in mm."""
     placed: Points = points @ from_px[:, :2].T + from_px[:, 2]
     return placed
+
+
+def invert(from_px: Affine) -> Affine:
+    """The way back: from mm to px. (2, 3) to (2, 3)."""
+    back = np.linalg.inv(from_px[:, :2])
+    return np.column_stack([back, -back @ from_px[:, 2]])

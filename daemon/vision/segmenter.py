@@ -24,6 +24,9 @@ import onnxruntime  # noqa: E402
 
 MODELS = Path(__file__).parent.parent / "models"
 MARGIN_PX = 16
+"""How far from its border a window's answer is not to be trusted."""
+WHOLE_PX = 285
+"""Pages up to this side are read whole."""
 BATCH = 4
 _BLANK = 64
 """A tile without a pixel this dark is blank paper (of 255)."""
@@ -36,6 +39,14 @@ class Manifest:
     file: str
     sha256: str
     tile_px: int
+    """Side of the windows that large pages are read through."""
+    legal_sizes_px: tuple[int, ...]
+    """Sides for which the network's answer has the size of its input."""
+
+    def window_px(self, side_px: int) -> int:
+        """The whole page in one window where that is a size the network was trained with, else tiles."""
+        whole = next((size for size in self.legal_sizes_px if size >= side_px), WHOLE_PX + 1)
+        return whole if whole <= WHOLE_PX else self.tile_px
 
 
 def load_manifest(name: str = "linedrawd") -> Manifest:
@@ -45,25 +56,26 @@ def load_manifest(name: str = "linedrawd") -> Manifest:
         known = ", ".join(sorted(p.stem for p in MODELS.glob("*.json")))
         raise SettingsError(f"there is no network called {name!r} in {MODELS}: choose one of {known}")
     values = json.loads(path.read_text())
-    return Manifest(values["file"], values["sha256"], values["tile_px"])
+    return Manifest(values["file"], values["sha256"], values["tile_px"], tuple(values["legal_sizes_px"]))
 
 
 class Segmenter:
     """A loaded network; one page at a time."""
 
     def __init__(self, name: str = "linedrawd", *, threads: int = 1) -> None:
-        self._tile_px = load_manifest(name).tile_px
-        self._session = open_model(MODELS / load_manifest(name).file, threads=threads)
+        self._manifest = load_manifest(name)
+        self._session = open_model(MODELS / self._manifest.file, threads=threads)
 
     def segment(self, page: PageImage) -> Segmentation:
         """Three maps of the page's shape, float32 in 0..1, that sum to 1 everywhere."""
         height, width = page.grey.shape
         maps = np.zeros((3, height, width), np.float32)
         maps[0] = 1.0
-        inked = [t for t in tiles(width, height, size_px=self._tile_px, margin_px=MARGIN_PX) if has_ink(page.grey, t)]
+        size_px = self._manifest.window_px(max(width, height))
+        inked = [t for t in tiles(width, height, size_px=size_px, margin_px=MARGIN_PX) if has_ink(page.grey, t)]
         for first in range(0, len(inked), BATCH):
             batch = inked[first : first + BATCH]
-            answers = softmax(self.logits(np.stack([cut(page.grey, t, self._tile_px) for t in batch])))
+            answers = softmax(self.logits(np.stack([cut(page.grey, t, size_px) for t in batch])))
             for tile, answer in zip(batch, answers, strict=True):
                 paste(maps, tile, answer)
         return Segmentation(*maps)
@@ -108,4 +120,5 @@ def paste(maps: NDArray[np.float32], tile: Tile, answer: NDArray[np.float32]) ->
 def softmax(logits: NDArray[np.float32]) -> NDArray[np.float32]:
     """Over axis 1."""
     powers = np.exp(logits - logits.max(axis=1, keepdims=True))
-    return powers / powers.sum(axis=1, keepdims=True)
+    shares: NDArray[np.float32] = powers / powers.sum(axis=1, keepdims=True)
+    return shares

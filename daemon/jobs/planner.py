@@ -1,0 +1,194 @@
+"""The order of the rooms: from a picture file to a job's folder, and from drawn ink to its measure.
+
+Runs in the worker process only. Writes strokes.json, drawing.svg, program.gcode, preview.png, explain.png, report.json.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from daemon.config import Machine, Settings, Sheet
+from daemon.errors import LinedrawError
+from daemon.graph.interpret import interpret
+from daemon.graph.strokes import strokes
+from daemon.intake.decode import decode
+from daemon.jobs.folder import write_durably
+from daemon.jobs.pens import pen_of
+from daemon.page.prepare import even_out, prepare
+from daemon.program.file import program_text
+from daemon.program.gcode import write_gcode
+from daemon.program.paper import write_paper
+from daemon.program.svg import write_svg
+from daemon.report import canvas
+from daemon.report.explain import explain
+from daemon.report.fidelity import Fidelity, fidelity, line_width_px
+from daemon.report.preview import preview
+from daemon.report.report import executed_report, from_json, planned_report, to_json
+from daemon.shapes import Affine, Drawing, LineGraph, PageImage, Points, Program, Segmentation, Stroke, Toolpath
+from daemon.toolpath.place import invert, place
+from daemon.toolpath.plan import plan_toolpath
+from daemon.vision.segmenter import Segmenter
+from firmware_protocol.grbl.planner import line_times_s
+
+Progress: TypeAlias = Callable[[str], None]
+
+
+def _silent(stage: str) -> None:
+    """Tells nobody."""
+
+
+def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *, progress: Progress = _silent) -> None:
+    """Plan one picture for one machine and fill its folder. Raises LinedrawError; a failed plan leaves no program."""
+    stages = Stages(progress)
+    with stages("decode"):
+        given = decode(source, max_megapixels=settings.intake.max_megapixels)
+    with stages("page"):
+        readable = even_out(given)
+        page = prepare(given)
+    with stages("vision"):
+        segmentation = segmenter(settings.planning.threads).segment(page)
+    with stages("graph"):
+        graph = interpret(page, segmentation, mode=settings.planning.graph)
+        on_page = _strokes(graph, page, settings)
+        drawing = on_given(on_page, page)
+    with stages("toolpath"):
+        toolpath = _toolpath(drawing, settings.sheet, settings.machines[machine])
+    with stages("program"):
+        program = _program(toolpath, settings.machines[machine])
+        estimated_s = line_times_s([line.text for line in program.lines])[-1]
+    with stages("report"):
+        _write_pictures(folder, settings, source.name, toolpath, estimated_s, (page, segmentation, graph, on_page))
+        width_px = line_width_px(readable.grey)
+        planned = planned_report(
+            page, graph, toolpath, _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px),
+            line_width_px=width_px, estimated_s=estimated_s, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb(),
+        )  # fmt: skip
+    write_durably(folder / "strokes.json", _strokes_json(drawing))
+    write_durably(folder / "report.json", to_json(planned).encode())
+    # The program comes last: a folder that holds one is planned whole.
+    write_durably(folder / "program.gcode", program_text(program).encode())
+
+
+def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
+    """Compare the ink of a simulated machine (ink.json) with the given picture and write it into report.json."""
+    ink = json.loads((folder / "ink.json").read_text())
+    planned = from_json((folder / "report.json").read_text())
+    source = next(iter(sorted(folder.glob("source*"))), None)
+    if source is None:
+        raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
+    readable = even_out(decode(source, max_megapixels=settings.intake.max_megapixels))
+    drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
+    found = _fidelity_mm(readable, drawn, np.array(planned.from_px))
+    executed = executed_report(planned, found, real_s=planned.real_s or 0.0)
+    write_durably(folder / "report.json", to_json(executed).encode())
+
+
+class Stages:
+    """Times each stage and tells its name when it begins."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def __call__(self, name: str) -> Iterator[None]:
+        self._progress(name)
+        began = time.perf_counter()
+        yield
+        self.seconds[name] = time.perf_counter() - began
+
+
+@lru_cache(maxsize=1)
+def segmenter(threads: int) -> Segmenter:
+    """Loaded once for all pictures of this process."""
+    return Segmenter(threads=threads)
+
+
+def on_given(drawing: Drawing, page: PageImage) -> Drawing:
+    """The same strokes in px of the given picture."""
+    moved = tuple(replace(stroke, points=place(stroke.points, page.to_given)) for stroke in drawing.strokes)
+    return Drawing(moved, page.given_width_px, page.given_height_px, page.px_per_mm)
+
+
+def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
+    height_px, width_px = page.grey.shape
+    as_in_paper = settings.planning.graph == "paper"
+    return strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
+
+
+def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
+    """The box's lower left corner in machine mm: where the pen stands is the sheet's corner, or the machine knows it."""
+    corner_mm = machine.origin_mm if machine.origin == "homed" else (0.0, 0.0)
+    return sheet.box_origin_mm[0] + corner_mm[0], sheet.box_origin_mm[1] + corner_mm[1]
+
+
+def _toolpath(drawing: Drawing, sheet: Sheet, machine: Machine) -> Toolpath:
+    return plan_toolpath(
+        drawing,
+        box_mm=sheet.box_mm,
+        box_origin_mm=box_origin_mm(sheet, machine),
+        error_mm=sheet.error_mm,
+        start_mm=machine.park_mm,
+        park_mm=machine.park_mm,
+        reach_mm=machine.reach_mm,
+    )
+
+
+def _program(toolpath: Toolpath, machine: Machine) -> Program:
+    if machine.dialect == "paper":
+        return write_paper(toolpath, draw_mm_s=machine.draw_mm_s)
+    return write_gcode(toolpath, pen=pen_of(machine), draw_mm_s=machine.draw_mm_s)
+
+
+def _write_pictures(
+    folder: Path,
+    settings: Settings,
+    name: str,
+    toolpath: Toolpath,
+    estimated_s: float,
+    understood: tuple[PageImage, Segmentation, LineGraph, Drawing],
+) -> None:
+    machine = next(iter(settings.machines.values()))
+    corner_mm = box_origin_mm(settings.sheet, machine)
+    sheet = preview(toolpath, box_mm=settings.sheet.box_mm, box_origin_mm=corner_mm, seconds=estimated_s)
+    svg = write_svg(toolpath, size_mm=settings.sheet.box_mm, corner_mm=corner_mm)
+    write_durably(folder / "preview.png", canvas.png(sheet))
+    write_durably(folder / "explain.png", canvas.png(explain(*understood, name=name)))
+    write_durably(folder / "drawing.svg", svg.encode())
+
+
+def _fidelity_mm(readable: PageImage, drawn_mm: list[Points], from_px: Affine) -> Fidelity:
+    """Of lines in machine mm, against the given picture in its own pixels, light and dark put right."""
+    back = invert(from_px)
+    return fidelity(readable, [place(line, back) for line in drawn_mm], line_width_px=line_width_px(readable.grey))
+
+
+def _strokes_json(drawing: Drawing) -> bytes:
+    lines: list[list[list[float]]] = [_rounded(stroke) for stroke in drawing.strokes]
+    return json.dumps(
+        {
+            "width_px": drawing.width_px,
+            "height_px": drawing.height_px,
+            "px_per_mm": drawing.px_per_mm,
+            "strokes": lines,
+        }
+    ).encode()
+
+
+def _rounded(stroke: Stroke) -> list[list[float]]:
+    rounded: list[list[float]] = np.round(stroke.points, 3).tolist()
+    return rounded
+
+
+def _peak_memory_mb() -> float:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
