@@ -156,7 +156,13 @@ class Chip:
         else:
             rpm = max(speed, slowest)
         self.spindle_direction, self.spindle_rpm = direction, rpm
+        self.reports_to_overrides = 0
         self.ink.servo(rpm, self.on_sheet(self.stepper.now_at()[0]))
+
+    def set_coolant(self, *, flood: bool) -> None:
+        """Switch the coolant."""
+        self.flood = flood
+        self.reports_to_overrides = 0
 
     def write_memory(self, changed: int) -> None:
         """Each further changed byte waits for the one before it with interrupts off: what arrives then is lost."""

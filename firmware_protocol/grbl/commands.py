@@ -11,7 +11,7 @@ from firmware_protocol.grbl.chip import Chip, Signal, State
 from firmware_protocol.grbl.homing import home
 from firmware_protocol.grbl.lookahead import Vector
 from firmware_protocol.grbl.motion import beyond_travel, move, perform
-from firmware_protocol.grbl.realtime import Wait
+from firmware_protocol.grbl.realtime import Wait, synchronize
 
 Answer: TypeAlias = Generator[Wait, None, int]
 """A routine that ends with the N of `error:N`, 0 for `ok`."""
@@ -158,11 +158,14 @@ def _store_startup(chip: Chip, line: str) -> Answer:
         return INVALID_STATEMENT
     text, index = line[at + 1 :], int(number)
     code = yield from run_gcode(chip, text)
-    if not code and 0 <= index < len(chip.memory.startup):
+    if code:
+        return code
+    yield from synchronize(chip)
+    if not chip.abort and 0 <= index < len(chip.memory.startup):
         if text != chip.memory.startup[index]:
             chip.write_memory(max(len(text), len(chip.memory.startup[index])) + 1)
         chip.memory.startup[index] = text
-    return code
+    return 0
 
 
 def _restore(chip: Chip, line: str) -> None:
@@ -187,3 +190,5 @@ def _store_setting(chip: Chip, line: str) -> None:
         raise GcodeError(INVALID_STATEMENT)
     chip.write_memory(chip.settings.store(int(number), value))
     chip.lookahead.load_settings()
+    if int(number) == 13:
+        chip.reports_to_wco = 0

@@ -57,12 +57,12 @@ class Ink:
     def travel(self, start: Vector, end: Vector) -> None:
         """A straight move that has been executed."""
         part = self.rule.part(start, end, self._speed)
-        if part is None or part[1] == 0.0:  # lifting the pen draws nothing
-            self._open = False
-            return
-        self._to(_between(start, end, part[0]))
-        self._to(_between(start, end, part[1]))
-        self._open = part[1] == 1.0
+        if part is not None:
+            first, last = _between(start, end, part[0]), _between(start, end, part[1])
+            if part[1] == 1.0 or not _same(first, last):  # a pen that is lifted straight up draws nothing
+                self._to(first)
+                self._to(last)
+        self._open = part is not None and part[1] == 1.0
 
     def cut(self) -> None:
         """Motion was cut: what follows is another line, even from the same place."""
@@ -81,8 +81,12 @@ class Ink:
             self._open = True
             return
         line = self.polylines[-1]
-        if abs(line[-1][0] - point[0]) > _SAME_MM or abs(line[-1][1] - point[1]) > _SAME_MM:
+        if not _same(line[-1], point):
             line.append(point)
+
+
+def _same(a: tuple[float, float], b: tuple[float, float]) -> bool:
+    return abs(a[0] - b[0]) <= _SAME_MM and abs(a[1] - b[1]) <= _SAME_MM
 
 
 def _between(start: Vector, end: Vector, part: float) -> tuple[float, float]:

@@ -126,5 +126,4 @@ class Interpreter:
             modal = self.modal
             modal.motion, modal.plane, modal.relative, modal.inverse_time = 10, 170, False, False
             modal.work, modal.work_mm, modal.spindle, modal.flood = 0, self.memory.places[0], 5, False
-            self.offsets_changed = True
             yield ProgramEnd()

@@ -71,7 +71,7 @@ def _at_rest(chip: Chip, action: Action) -> Routine:
     elif isinstance(action, Spindle):
         chip.set_spindle(action.direction, action.speed)
     elif isinstance(action, Coolant):
-        chip.flood = action.flood
+        chip.set_coolant(flood=action.flood)
     elif isinstance(action, Remember):
         chip.write_memory(action.changed)
     elif isinstance(action, Pause):
@@ -79,7 +79,8 @@ def _at_rest(chip: Chip, action: Action) -> Routine:
         yield from execute_realtime(chip)
     elif isinstance(action, ProgramEnd):
         chip.set_spindle(5, 0.0)
-        chip.flood = False
+        chip.set_coolant(flood=False)
+        chip.reports_to_wco = 0
         _end(chip)
 
 
@@ -111,8 +112,10 @@ def _soft_limit(chip: Chip) -> Routine:
 
 
 def _until_idle(chip: Chip) -> Routine:
-    while chip.state is not State.IDLE and not chip.abort:
+    while True:
         yield from execute_realtime(chip)
+        if chip.state is State.IDLE or chip.abort:
+            return
         if not chip.attention:
             yield None
 

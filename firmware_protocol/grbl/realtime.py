@@ -198,19 +198,20 @@ def _override(chip: Chip) -> None:
     rapid = next((value for byte, value in ((0x97, 25), (0x96, 50), (0x95, 100)) if byte in asked), chip.rapid_percent)
     if (feed, rapid) != (chip.feed_percent, chip.rapid_percent):
         set_overrides(chip, feed, rapid)
+        chip.reports_to_overrides = 0
     spindle = _percent(chip.spindle_percent, asked, 0x99)
     if spindle != chip.spindle_percent:
         chip.spindle_percent, chip.reports_to_overrides = spindle, 0
         if chip.spindle_direction != 5:
             chip.set_spindle(chip.spindle_direction, chip.interpreter.modal.speed)
     if 0xA0 in asked and chip.state in (State.IDLE, State.RUN, State.HOLD):
-        chip.interpreter.modal.flood = chip.flood = not chip.flood
-        chip.reports_to_overrides = 0
+        chip.interpreter.modal.flood = not chip.flood
+        chip.set_coolant(flood=not chip.flood)
 
 
 def set_overrides(chip: Chip, feed: int, rapid: int) -> None:
     """Execute at these percentages from now on."""
-    chip.feed_percent, chip.rapid_percent, chip.reports_to_overrides = feed, rapid, 0
+    chip.feed_percent, chip.rapid_percent = feed, rapid
     chip.lookahead.override(feed=feed / 100, rapid=rapid / 100)
     chip.stepper.planned()
 
