@@ -33,7 +33,7 @@ _SUBPIXEL_BITS = 4
 
 def blank(width_px: int, height_px: int, colour: Colour = PAPER) -> Picture:
     """A picture of one colour, uint8 (height, width, 3)."""
-    return np.full((height_px, width_px, 3), colour, np.uint8)
+    return np.repeat(np.full((1, width_px, 3), colour, np.uint8), height_px, axis=0)
 
 
 def line(picture: Picture, points: Points, colour: Colour, width_px: float = 1.0) -> None:
@@ -141,8 +141,9 @@ def many_colours() -> Iterator[Colour]:
 
 
 def png(picture: Picture) -> bytes:
-    """The picture as the bytes of a PNG file."""
-    return bytes(cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 6])[1])
+    """The picture as the bytes of a PNG file, smaller and several times faster without a filter: it is mostly blank."""
+    how = [cv2.IMWRITE_PNG_COMPRESSION, 3, cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_NONE]
+    return bytes(cv2.imencode(".png", picture, how)[1])
 
 
 def _fixed(points: NDArray[np.float64]) -> NDArray[np.int32]:
