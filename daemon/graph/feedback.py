@@ -42,13 +42,13 @@ def select(
     """Which pairs are edges: eta above a threshold of their own, which feedback adapts (Eqs. 1 and 3).
 
     pairs: (P, 2) indices of vertices. eta: (P,). ink: bool (H, W). width_px: of the rendered line. Returns (P,) bool.
-    Stops early when no blob has a pair inside, for then no later round can change a decision.
+    Stops early when no later round can change a decision: the rendering would stay, and so would its blobs.
     """
     tau = np.full(len(pairs), adaptation.tau0)
     chosen = eta > tau
-    for _ in range(adaptation.rounds):
+    for left in range(adaptation.rounds, 0, -1):
         delta = _deltas(vertices, pairs, rendering(vertices, pairs[chosen], ink.shape, width_px=width_px), ink)
-        if not delta.any():
+        if not (((eta > tau * (1 + adaptation.rate * delta) ** left) != chosen) & (delta != 0)).any():
             break
         tau = tau * (1 + adaptation.rate * delta)
         chosen = eta > tau
