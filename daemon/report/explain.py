@@ -10,7 +10,7 @@ from daemon.ink import Mask, ink_mask, thin
 from daemon.report import canvas
 from daemon.report.canvas import Colour, Picture
 from daemon.report.fidelity import within
-from daemon.shapes import Drawing, LineGraph, Map, PageImage, Points, Segmentation
+from daemon.shapes import Drawing, Grey, LineGraph, PageImage, Points, Segmentation
 
 _TILE_PX = 720
 _MARGIN_PX = 28
@@ -80,31 +80,27 @@ def _missed(page: PageImage, drawing: Drawing) -> Mask:
 
 
 def _channels(segmentation: Segmentation, scale: float) -> Picture:
-    tile = _resized(np.full((*segmentation.lines.shape, 3), 255, np.float32), scale)
-    for channel, colour in ((segmentation.lines, canvas.BLUE), (segmentation.corners, canvas.ORANGE)):
-        share = _resized(channel, scale)[..., None]
-        tile = tile * (1 - share) + share * np.array(colour, np.float32)
-    return _bytes(tile)
+    lines, corners = segmentation.lines[..., None], segmentation.corners[..., None]
+    seen = np.full((*segmentation.lines.shape, 3), 255, np.float32)
+    seen += lines * (np.array(canvas.BLUE, np.float32) - seen)
+    seen += corners * (np.array(canvas.ORANGE, np.float32) - seen)
+    return _resized(np.asarray(np.rint(np.clip(seen, 0, 255)), np.uint8), scale)
 
 
-def _faded(grey: NDArray[np.uint8], scale: float) -> Picture:
+def _faded(grey: Grey, scale: float) -> Picture:
     """The page, pale, so that thin lines on it can be told from it."""
-    return _bytes(255 - (255 - _enlarged(grey, scale).astype(np.float32)) * 0.28)
+    return _enlarged(np.asarray(184 + 71 * (grey / np.float32(255)), np.uint8), scale)
 
 
-def _enlarged(grey: NDArray[np.uint8], scale: float) -> Picture:
-    return _bytes(_resized(np.repeat(grey[..., None], 3, axis=2).astype(np.float32), scale))
+def _enlarged(grey: Grey, scale: float) -> Picture:
+    return np.asarray(cv2.cvtColor(_resized(grey, scale), cv2.COLOR_GRAY2BGR), np.uint8)
 
 
-def _bytes(levels: Map) -> Picture:
-    return np.asarray(np.rint(np.clip(levels, 0, 255)), np.uint8)
-
-
-def _resized(image: Map, scale: float) -> Map:
+def _resized(image: NDArray[np.uint8], scale: float) -> NDArray[np.uint8]:
     """Pixels stay visible squares where a page is much enlarged, and are averaged where it is made smaller."""
     size = (max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale)))
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR if scale < 2 else cv2.INTER_NEAREST
-    return np.asarray(cv2.resize(image, size, interpolation=how), np.float32)
+    return np.asarray(cv2.resize(image, size, interpolation=how), np.uint8)
 
 
 def _on_tile(points: Points, scale: float) -> Points:
