@@ -14,30 +14,8 @@ _NO_STROKE = "(no stroke)"
 _COMMENT = re.compile(r"\([^)]*\)|;.*")
 
 
-def save_program(path: Path, program: Program) -> None:
-    """One line a program line, before each change of stroke a comment that says which. Raises DiskTrouble."""
-    try:
-        path.write_text(program_text(program), encoding="ascii")
-    except OSError as error:
-        raise DiskTrouble(f"cannot write {path}: {error.strerror}: free space or mend the folder's rights") from error
-
-
-def load_program(path: Path) -> Program:
-    """What `save_program` wrote, comments removed: they must never be sent. Raises DiskTrouble, LinedrawError.
-
-    A file that was written by something else has no stroke comments: the head comment is missing and it is refused.
-    """
-    try:
-        text = path.read_text(encoding="ascii")
-    except OSError as error:
-        raise DiskTrouble(f"cannot read {path}: {error.strerror}: mend the folder's rights") from error
-    except UnicodeDecodeError as error:
-        raise LinedrawError(f"{path}, byte {error.start}: not a program of ours: plan the picture again") from error
-    return parse_program(text, name=str(path))
-
-
 def program_text(program: Program) -> str:
-    """The file's text. Stroke numbers count from 0, as everywhere."""
+    """The file's text: a line a program line, before each change of stroke a comment that says which, from 0."""
     rows = [_HEAD.format(strokes=program.strokes)]
     before: int | None = None
     for line in program.lines:
@@ -46,6 +24,21 @@ def program_text(program: Program) -> str:
             before = line.stroke
         rows.append(line.text)
     return "\n".join(rows) + "\n"
+
+
+def load_program(path: Path) -> Program:
+    """The program whose text the file holds, comments removed: they must never be sent.
+
+    Raises DiskTrouble when it cannot be read, LinedrawError when it is no `program_text`: without the comments nobody
+    knows which line belongs to which stroke.
+    """
+    try:
+        text = path.read_text(encoding="ascii")
+    except OSError as error:
+        raise DiskTrouble(f"cannot read {path}: {error.strerror}: mend the folder's rights") from error
+    except UnicodeDecodeError as error:
+        raise LinedrawError(f"{path}, byte {error.start}: not a program of ours: plan the picture again") from error
+    return parse_program(text, name=str(path))
 
 
 def parse_program(text: str, *, name: str = "program") -> Program:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from daemon.program.file import program_text
 from daemon.program.gcode import Pen, ServoPen, ZPen, lift_lines, write_gcode
 from daemon.shapes import Points, Program, Stroke, Toolpath
+from firmware_protocol.grbl.planner import line_ends
 from tests.daemon.program.examples import TOOLPATH
 from tests.daemon.toolpath.strokes import polylines
 
@@ -37,15 +38,18 @@ def test_the_pen_is_raised_before_anything_moves(pen: Pen, lift: str) -> None:
 
 
 @given(st.lists(polylines(), min_size=1, max_size=5))
-def test_what_is_drawn_with_the_pen_down_is_the_toolpath(polyline_list: list[Points]) -> None:
+def test_a_controller_draws_the_toolpath_with_the_pen_down_and_parks_with_it_up(polyline_list: list[Points]) -> None:
     toolpath = replace(TOOLPATH, strokes=tuple(map(Stroke, polyline_list)))
     program = write_gcode(toolpath, pen=Z, draw_mm_s=20)
+    positions = [end.position_mm for end in line_ends(texts(program))]
     for index, points in enumerate(polyline_list):
-        moves = [re.findall(r"[XY](\S+)", text) for text in texts(program, index) if "X" in text]
-        drawn = np.array(moves, float)
-        assert len(drawn) <= len(points)
-        assert drawn[0] == pytest.approx(points[0], abs=6e-4)
-        assert drawn[-1] == pytest.approx(points[-1], abs=6e-4)
+        own = [position for position, line in zip(positions, program.lines, strict=True) if line.stroke == index]
+        down = np.array([position[:2] for position in own if position[2] == Z.down_mm])
+        assert down[0] == pytest.approx(points[0], abs=3e-3)
+        assert down[-1] == pytest.approx(points[-1], abs=3e-3)
+        assert len(down) <= len(points)
+        assert own[-1][2] == Z.up_mm
+    assert positions[-1] == pytest.approx((*TOOLPATH.park_mm, Z.up_mm), abs=3e-3)
 
 
 def test_each_line_knows_its_stroke() -> None:
@@ -67,9 +71,9 @@ def test_moves_shorter_than_the_last_decimal_are_not_sent() -> None:
 
 @pytest.mark.parametrize("pen", [Z, SERVO], ids=["z", "servo"])
 def test_every_line_is_one_that_grbl_takes(pen: Pen) -> None:
-    for text in texts(write_gcode(TOOLPATH, pen=pen, draw_mm_s=20)):
-        assert re.fullmatch(r"([GMXYZFSP]-?\d+(\.\d+)?( |$))+", text), text
-        assert len(text.replace(" ", "")) < 80
+    program = texts(write_gcode(TOOLPATH, pen=pen, draw_mm_s=20))
+    assert len(line_ends(program)) == len(program)
+    assert all(re.fullmatch(r"([GMXYZFSP]-?\d+(\.\d+)?( |$))+", text) for text in program)
 
 
 @pytest.mark.parametrize("pen", [Z, SERVO], ids=["z", "servo"])

@@ -8,6 +8,7 @@ import pytest
 
 from daemon.program.file import program_text
 from daemon.program.paper import Units, write_paper
+from firmware_protocol.grbl.planner import line_ends
 from tests.daemon.program.examples import TOOLPATH
 
 
@@ -28,3 +29,7 @@ def test_positions_and_the_lifted_pen_are_scaled(units: Units, away: str, x: str
 def test_a_stroke_is_first_vertex_engage_the_rest_disengage() -> None:
     stroke = [line.text for line in write_paper(TOOLPATH).lines if line.stroke == 0]
     assert stroke == ["X30.00 Y40.00", "G01 Z0", "X30.00 Y50.50", "X41.25 Y50.50", "G00 Z-5"]
+
+
+def test_grbl_takes_every_line() -> None:
+    assert line_ends([line.text for line in write_paper(TOOLPATH).lines])[-1].position_mm[2] == -5
