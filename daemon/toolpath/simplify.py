@@ -12,9 +12,9 @@ def simplify(points: Points, *, error: float) -> Points:
     """The polyline reduced by Ramer, Douglas and Peucker (1972, 1973): no given point lies further than error from it.
 
     points: (N, 2) float64, N >= 1, any unit; error: in the same unit, >= 0. Returns (M, 2), a subset of the points
-    in their order, first and last among them; points that all lie within error of the first come back as one point,
-    if the last is the first. A closed polyline stays closed. Iterative: no recursion limit bounds its length. Raises
-    ValueError when there is no point or error is negative.
+    in their order, first and last among them. A closed polyline stays closed; one that lies all within error of its
+    first point becomes that point; what runs back over its own line is not drawn twice. Iterative: no recursion limit
+    bounds its length. Raises ValueError when there is no point or error is negative.
     """
     if len(points) == 0 or error < 0:
         raise ValueError(f"a polyline of {len(points)} points cannot be simplified with error {error}: give points")

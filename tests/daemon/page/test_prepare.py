@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from daemon.page.prepare import prepare
+from daemon.page.prepare import even_out, prepare
 from tests.daemon.page.pages import drawn, grain, in_shadow, overlap, page
 
 
@@ -22,6 +22,13 @@ def test_thick_chalk_on_an_unevenly_lit_board_becomes_fine_ink() -> None:
     assert prepared.line_width_px == pytest.approx(2.5)
     fine = cv2.resize(drawn(width_px=5, side_px=512), prepared.grey.shape[::-1], interpolation=cv2.INTER_AREA)
     assert overlap(prepared.grey, np.asarray(fine, np.uint8)) > 0.85
+
+
+def test_evening_out_keeps_every_pixel_where_it_is() -> None:
+    board = drawn(ink=235, paper=50, width_px=9)
+    evened = even_out(page(board))
+    assert np.array_equal(evened.to_given, np.eye(2, 3))
+    assert overlap(evened.grey, drawn(width_px=9)) > 0.95
 
 
 @pytest.mark.parametrize("level", [0, 128, 255])
