@@ -26,7 +26,7 @@ class SimulatedTransport:
 
     def __init__(self, simulator: GrblSimulator, *, speed: float = 0.0, name: str = "sim://grbl") -> None:
         self.simulator, self.speed, self._name = simulator, speed, name
-        self._now = 0.0
+        self._now = self._began_s = simulator.now
         self._started_s = time.monotonic()
         self._woken = threading.Event()
         self._closed = False
@@ -43,7 +43,7 @@ class SimulatedTransport:
 
     def now(self) -> float:
         if self.speed and not self._closed:
-            self._now = max(self._now, (time.monotonic() - self._started_s) * self.speed)
+            self._now = max(self._now, self._began_s + (time.monotonic() - self._started_s) * self.speed)
         return self._now
 
     def read(self, until: float | None) -> bytes:

@@ -51,6 +51,11 @@ class GrblSimulator:
         self.unplugged = False
 
     @property
+    def now(self) -> float:
+        """The latest time that it has been told."""
+        return self._chip.now
+
+    @property
     def ink(self) -> list[Polyline]:
         """What is on the sheet now: polylines of (x, y) in mm from the place where the machine was switched on."""
         return self._chip.ink_now().polylines
