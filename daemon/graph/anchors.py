@@ -39,8 +39,9 @@ class Nearest:
 def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, width_px: float) -> Anchored:
     """Give every junction, end and ring of a skeleton a vertex: the corner nearby, else one of its own.
 
-    corners: (C, 2) in px, no two on one pixel. shape: of the page. width_px: of the line. A corner answers for junctions and ends within 1.5 line widths (3 px at least): thinning
-    moves a junction by half a width, and one crossing becomes two.
+    corners: (C, 2) in px, no two on one pixel. shape: of the page. width_px: of the line. A corner answers
+    for junctions and ends within 1.5 line widths (3 px at least): thinning moves a junction by half a width, and one
+    crossing becomes two.
     """
     reach_px = max(3.0, 1.5 * width_px)
     owner, distance = nearest_at(corners, skeleton.pixels, shape)

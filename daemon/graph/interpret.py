@@ -70,7 +70,7 @@ def _check(page: PageImage, segmentation: Segmentation) -> None:
 def _ink_of(page: PageImage) -> _Ink:
     """Ink without specks, dots taken out of it."""
     mask = ink_mask(page.grey)
-    count, labels, stats, centres = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    _, labels, stats, centres = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
     areas = stats[:, cv2.CC_STAT_AREA]
     width_px = page.line_width_px or _width_px(mask)
     dirt = areas < _LEAST_SPECK_PX
@@ -124,7 +124,7 @@ def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> Lin
 
 
 def _simplified(polyline: Points) -> Points:
-    """A polyline with fewer points, nowhere further than 0.12 px from the given one (Ramer 1972, Douglas-Peucker 1973)."""
+    """A polyline of fewer points, at most 0.12 px from the given one (Ramer 1972; Douglas and Peucker 1973)."""
     kept = cv2.approxPolyDP(polyline.astype(np.float32).reshape(-1, 1, 2), _SIMPLIFIED_PX, False).reshape(-1, 2)
     result = kept.astype(np.float64)
     result[0], result[-1] = polyline[0], polyline[-1]

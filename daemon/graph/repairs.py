@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +18,6 @@ _GAP_SHARE = 0.06
 _EDGE_PX = 0.6
 _TWICE_SHARE = 0.8
 _NEAR_PX = 3.0
-_SHIFT = 4
 
 
 def without_gap(ink: Mask, starts: Points, ends: Points) -> NDArray[np.bool_]:
@@ -73,35 +71,33 @@ def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -
     return refused
 
 
-def redundant(ink: Mask, starts: Points, ends: Points, order: Indices) -> NDArray[np.bool_]:
-    """Which segments the others cover anyway (rule *prune*): looked at in `order`, dropped when 80 % is covered twice.
+def redundant(shape: tuple[int, ...], starts: Points, ends: Points, order: Indices) -> NDArray[np.bool_]:
+    """Which segments the others cover anyway (rule *prune*): looked at in `order`, dropped when 80 % lies under them.
 
-    starts, ends: (P, 2) in px. order: indices of the segments that may be dropped, least trusted first.
+    shape: of the page. starts, ends: (P, 2) in px. order: indices of the segments that may be dropped, least trusted
+    first. A segment covers the pixels within about one of it.
     """
-    cover = np.zeros(ink.shape, np.int16)
-    wide = [_footprint(start, end, ink.shape, 3) for start, end in zip(starts, ends, strict=True)]
-    for ys, xs in wide:
-        cover[ys, xs] += 1
     dropped = np.zeros(len(starts), bool)
+    if not order.size:
+        return dropped
+    samples, area = sampled(starts, ends), int(np.prod(shape))
+    beside = samples.normals[samples.segment]
+    left, centre, right = (_flat(samples.points + side * beside, shape) for side in (-1.0, 0.0, 1.0))
+    segment, pixels = np.divmod(np.unique(samples.segment * area + np.stack([left, centre, right])), area)
+    bounds = np.searchsorted(segment, np.arange(len(starts) + 1))
+    last = np.append(samples.first[1:], len(centre))
+    cover = np.bincount(pixels, minlength=area)
     for index in order.tolist():
-        ys, xs = _footprint(starts[index], ends[index], ink.shape, 1)
-        if (cover[ys, xs] >= 2).mean() >= _TWICE_SHARE:
+        if (cover[centre[samples.first[index] : last[index]]] >= 2).mean() >= _TWICE_SHARE:
             dropped[index] = True
-            cover[wide[index]] -= 1
+            cover[pixels[bounds[index] : bounds[index + 1]]] -= 1
     return dropped
 
 
-def _footprint(
-    start: NDArray[np.float64], end: NDArray[np.float64], shape: tuple[int, ...], wide: int
-) -> tuple[Indices, Indices]:
-    """The pixels (y, x) of a segment `wide` px wide, each once."""
-    low = np.maximum(np.floor(np.minimum(start, end)).astype(int) - 2, 0)
-    size = np.ceil(np.maximum(start, end)).astype(int) + 3 - low
-    canvas = np.zeros((size[1], size[0]), np.uint8)
-    ends = np.rint((np.stack([start, end]) - low) * (1 << _SHIFT)).astype(np.int32)
-    cv2.polylines(canvas, [ends], False, 1, wide, cv2.LINE_8, _SHIFT)
-    ys, xs = np.nonzero(canvas[: shape[0] - low[1], : shape[1] - low[0]])
-    return ys + low[1], xs + low[0]
+def _flat(points: Points, shape: tuple[int, ...]) -> Indices:
+    """The index of the pixel at each point in a flattened page; points outside it count as on its border."""
+    x, y = np.clip(np.rint(points).astype(np.intp), 0, [shape[1] - 1, shape[0] - 1]).T
+    return np.asarray(y * shape[1] + x, np.intp)
 
 
 def _is_between(corners: Points, p: Indices, q: Indices, r: Indices) -> NDArray[np.bool_]:

@@ -207,7 +207,7 @@ def _fits(points: Points, edge: Indices, count: int) -> tuple[Points, Points, Fl
 
 
 def _pinned(bundle: _Bundle, valid: NDArray[np.bool_], ends: Indices, vertices: Points) -> _Bundle:
-    """Edges that end in their vertices; doubtful points next to them lie on the straight line to the first sound one."""
+    """Edges that end in their vertices; doubtful points near an end lie on the line to the first sound one."""
     index = np.arange(len(bundle.points))
     sound = valid.copy()
     sound[bundle.first] = sound[bundle.last] = True

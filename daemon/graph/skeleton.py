@@ -52,7 +52,7 @@ def skeleton_of(mask: Mask) -> Skeleton:
 
 
 def thinned(ink: Mask, *, shortest_spur_px: float) -> Skeleton:
-    """The skeleton of `ink` without spurs: branches shorter than `shortest_spur_px` that thinning leaves on wide lines."""
+    """The skeleton of `ink` without spurs: branches up to `shortest_spur_px` that thinning leaves on wide lines."""
     mask = thin(ink)
     skeleton = skeleton_of(mask)
     spurs = [

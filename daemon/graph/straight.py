@@ -46,20 +46,20 @@ def straight_edges(
 ) -> Indices:
     """Pairs (E, 2) of vertices that a straight line joins, each line once.
 
-    Candidates are pairs at most three chains apart, so their number grows with the vertices, not with their square.
+    Candidates are pairs at most three chains apart and pairs near each other on the page, about a hundred a vertex, so
+    their number grows with the vertices, not with their square.
     A pair is refused where its eta is below its threshold (Eqs. 2 and 3; both discs trimmed off, corners on the way
     counted as line), where ink is missing along it, where it passes by a corner, where its own chain bends, and where
     other edges cover it.
     """
     vertices = anchored.vertices[: anchored.corners]
     pairs, bends = _candidates(anchored, skeleton, chains, ink)
-    starts, ends = _ends(vertices, pairs)
+    sound = _sound(vertices, pairs, bends, ink, width_px)
+    looked_at = sound | (bends >= 0)
+    pairs, bends, sound = pairs[looked_at], bends[looked_at], sound[looked_at]
     response = segmentation.lines + segmentation.corners
-    eta = plausibilities(response, starts, ends, width_px=BETA_PX, trim_px=TRIM_PX)
-    lowest = adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds
-    sound = (eta > lowest) & (bends <= _BEND_PX) & without_gap(ink, starts, ends)
-    sound &= (bends >= 0) | filled(ink, starts, ends, width_px=width_px)
-    pairs, bends, eta, sound = (values[sound | (bends >= 0)] for values in (pairs, bends, eta, sound))
+    eta = plausibilities(response, *_ends(vertices, pairs), width_px=BETA_PX, trim_px=TRIM_PX)
+    sound &= eta > adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds
     near = nearest(vertices, (ink.shape[0], ink.shape[1]))
     allowed = sound & ~suppressed(vertices, pairs, pairs[(eta > adaptation.tau0) | (bends >= 0)], near)
     pairs, bends, eta = pairs[allowed], bends[allowed], eta[allowed]
@@ -67,7 +67,16 @@ def straight_edges(
     pairs, bends, eta = pairs[chosen], bends[chosen], eta[chosen]
     unbacked = np.flatnonzero(bends < 0)
     order = unbacked[np.argsort(eta[unbacked], kind="stable")]
-    return pairs[~redundant(ink, *_ends(vertices, pairs), order)]
+    return pairs[~redundant(ink.shape, *_ends(vertices, pairs), order)]
+
+
+def _sound(vertices: Points, pairs: Indices, bends: Floats, ink: Mask, width_px: float) -> NDArray[np.bool_]:
+    """Which pairs have the ink of a line between them; a full line's width of it where no chain joins the two."""
+    sound = bends <= _BEND_PX
+    sound[sound] = without_gap(ink, *_ends(vertices, pairs[sound]))
+    alone = sound & (bends < 0)
+    sound[alone] = filled(ink, *_ends(vertices, pairs[alone]), width_px=width_px)
+    return sound
 
 
 def bend_px(skeleton: Skeleton, chain: Chain, vertices: Points) -> float:

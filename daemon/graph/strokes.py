@@ -47,7 +47,7 @@ def _strokes_gen(graph: LineGraph) -> list[list[int]]:
     for halves in adjacency:
         halves.reverse()
     popped = [False] * len(graph.edges)
-    walks = []
+    walks: list[list[int]] = []
     for start in range(len(adjacency)):
         while walk := _get_sequence(graph, adjacency, popped, start):
             walks.append(walk)
@@ -56,7 +56,7 @@ def _strokes_gen(graph: LineGraph) -> list[list[int]]:
 
 def _get_sequence(graph: LineGraph, adjacency: list[list[int]], popped: list[bool], vertex: int) -> list[int]:
     """Get_Sequence: the first edge left at each vertex, popped as it is traversed, until a vertex has none."""
-    walk = []
+    walk: list[int] = []
     while True:
         while adjacency[vertex] and popped[adjacency[vertex][-1] >> 1]:
             adjacency[vertex].pop()
