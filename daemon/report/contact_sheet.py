@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +19,12 @@ _GAP_PX = 18
 _MARGIN_PX = 40
 _HEAD_PX = 96
 _SIDE_PX = 210
-_COLUMNS = ("given", "understood", "drawn")
+_TILES = ("given", "understood", "drawn")
+_PITCH_PX = _TILE_PX + _GAP_PX
+_COLUMN_PX = _MARGIN_PX + _SIDE_PX + len(_TILES) * _PITCH_PX - _GAP_PX
+_ROWS_IN_ONE_COLUMN = 6
+_FINE = 4
+"""The ink is drawn this many times as large and averaged, for a true width."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,15 +48,18 @@ class Row:
 
 
 def contact_sheet(rows: Sequence[Row], *, title: str) -> Picture:
-    """One picture with a row for each job. Returns uint8 (H, W, 3)."""
-    pitch = _TILE_PX + _GAP_PX
-    width = 2 * _MARGIN_PX + _SIDE_PX + len(_COLUMNS) * pitch
-    sheet = canvas.blank(width, _HEAD_PX + len(rows) * pitch + _MARGIN_PX - _GAP_PX, canvas.DESK)
+    """One picture with a row for each job, in two columns where there are many. Returns uint8 (H, W, 3)."""
+    columns = 2 if len(rows) > _ROWS_IN_ONE_COLUMN else 1
+    deep = math.ceil(len(rows) / columns)
+    sheet = canvas.blank(
+        columns * _COLUMN_PX + _MARGIN_PX, _HEAD_PX + deep * _PITCH_PX + _MARGIN_PX - _GAP_PX, canvas.DESK
+    )
     canvas.write(sheet, title, (_MARGIN_PX, 46), size_px=26, weight=600)
-    for column, words in enumerate(_COLUMNS):
-        canvas.write(sheet, words, (_left(column), _HEAD_PX - 12), canvas.QUIET, size_px=16)
+    for left in range(0, columns * _COLUMN_PX, _COLUMN_PX):
+        for number, words in enumerate(_TILES):
+            canvas.write(sheet, words, (left + _tile_left(number), _HEAD_PX - 12), canvas.QUIET, size_px=16)
     for index, row in enumerate(rows):
-        _lay(sheet, row, _HEAD_PX + index * pitch)
+        _lay(sheet, row, index // deep * _COLUMN_PX, _HEAD_PX + index % deep * _PITCH_PX)
     return sheet
 
 
@@ -65,23 +74,23 @@ def understood_tile(row: Row) -> Picture:
 
 
 def drawn_tile(row: Row) -> Picture:
-    """The ink at the width of the pen, on a white tile drawn twice as large for its fine edges."""
-    large = canvas.blank(2 * _TILE_PX, 2 * _TILE_PX)
-    scale = 2 * _TILE_PX / max(row.given.shape[:2])
+    """The ink at the width of the pen, on a white tile."""
+    large = canvas.blank(_FINE * _TILE_PX, _FINE * _TILE_PX)
+    width_px = row.line_width_px * _FINE * _TILE_PX / max(row.given.shape[:2])
     for stroke in row.drawn:
-        canvas.line(large, _on_tile(stroke, row.given) * 2 + 0.5, canvas.INK, row.line_width_px * scale)
+        canvas.line(large, (_on_tile(stroke, row.given) + 0.5) * _FINE - 0.5, canvas.INK, width_px)
     return canvas.fit(large, _TILE_PX, _TILE_PX)
 
 
-def _lay(sheet: Picture, row: Row, top: int) -> None:
-    for column, tile in enumerate((canvas.fit(row.given, _TILE_PX, _TILE_PX), understood_tile(row), drawn_tile(row))):
-        left = _left(column)
-        canvas.paste(sheet, tile, left, top)
-        canvas.box(sheet, (left - 1, top - 1), (left + _TILE_PX, top + _TILE_PX), canvas.FRAME)
+def _lay(sheet: Picture, row: Row, left: int, top: int) -> None:
+    for number, tile in enumerate((canvas.fit(row.given, _TILE_PX, _TILE_PX), understood_tile(row), drawn_tile(row))):
+        x = left + _tile_left(number)
+        canvas.paste(sheet, tile, x, top)
+        canvas.box(sheet, (x - 1, top - 1), (x + _TILE_PX, top + _TILE_PX), canvas.FRAME)
     name = canvas.shortened(row.name, _SIDE_PX - _GAP_PX, size_px=20, weight=600)
-    canvas.write(sheet, name, (_MARGIN_PX, top + 26), size_px=20, weight=600)
+    canvas.write(sheet, name, (left + _MARGIN_PX, top + 26), size_px=20, weight=600)
     for number, (words, colour) in enumerate(_said(row)):
-        canvas.write(sheet, words, (_MARGIN_PX, top + 56 + 24 * number), colour, size_px=16)
+        canvas.write(sheet, words, (left + _MARGIN_PX, top + 56 + 24 * number), colour, size_px=16)
 
 
 def _said(row: Row) -> list[tuple[str, Colour]]:
@@ -95,8 +104,8 @@ def _said(row: Row) -> list[tuple[str, Colour]]:
     return [(words, canvas.QUIET) for words in said]
 
 
-def _left(column: int) -> int:
-    return _MARGIN_PX + _SIDE_PX + column * (_TILE_PX + _GAP_PX)
+def _tile_left(number: int) -> int:
+    return _MARGIN_PX + _SIDE_PX + number * _PITCH_PX
 
 
 def _on_tile(points: Points, given: Picture) -> Points:

@@ -113,6 +113,12 @@ def test_a_contact_sheet_has_equal_rows_however_different_the_jobs() -> None:
     assert three.shape[0] - two.shape[0] == two.shape[0] - one.shape[0]
 
 
+def test_many_jobs_stand_in_two_columns() -> None:
+    six, seven = (contact_sheet([row()] * count, title="linedrawd") for count in (6, 7))
+    assert seven.shape[1] > 1.8 * six.shape[1]
+    assert seven.shape[0] < six.shape[0]
+
+
 def test_a_contact_sheet_without_jobs_is_a_heading() -> None:
     assert contact_sheet([], title="linedrawd").shape[0] > 0
 
