@@ -16,7 +16,7 @@ from daemon.report.fidelity import Fidelity
 from daemon.report.report import executed_report, planned_report, to_json
 from daemon.shapes import LineGraph, PageImage, Stroke, Toolpath
 from daemon.toolpath.place import placement
-from tests.demo import OVER, Seen, drop, line_of, row_of, seen_jobs
+from tests.demo import DRAWINGS, OVER, Seen, drop, line_of, main, row_of, seen_jobs
 
 LINE = np.array([[10.0, 20.0], [110.0, 20.0]])
 
@@ -93,3 +93,15 @@ def test_a_picture_is_dropped_whole(tmp_path: Path) -> None:
     picture.write_bytes(b"x" * 1000)
     drop([picture], tmp_path / "inbox")
     assert {path.name: path.stat().st_size for path in (tmp_path / "inbox").iterdir()} == {"a.png": 1000}
+
+
+def test_the_daemon_draws_what_is_dropped_and_says_what_it_could_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = tmp_path / "text.png"
+    bad.write_text("no picture")
+    assert main([str(tmp_path / "demo"), str(DRAWINGS / "star.png"), str(bad)]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert sorted(line.split()[0] for line in said[:2]) == ["done", "failed"]
+    assert said[-1].startswith("1 of 2 pictures drawn")
+    assert cv2.imread(str(tmp_path / "demo" / "contact_sheet.png")) is not None
