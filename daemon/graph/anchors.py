@@ -46,6 +46,7 @@ def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, wid
     reach_px = max(3.0, 1.5 * width_px)
     owner, distance = nearest_at(corners, skeleton.pixels, shape)
     owners = np.where(distance <= max(_DISC_PX, 0.75 * width_px), owner, -1)
+    _seize(skeleton, corners, owners, shape, reach_px)
     clusters = junctions(skeleton) + [np.array([end]) for end in np.flatnonzero(skeleton.degrees <= 1)]
     strays = [_claim(cluster, owner, distance, owners, reach_px) for cluster in clusters]
     vertices = _add_strays(skeleton, [s for s in strays if s is not None], corners, owners, width_px)
@@ -78,6 +79,18 @@ def nearest_at(vertices: Points, pixels: Indices, shape: tuple[int, int]) -> tup
     if not len(vertices):
         return owner, np.full(len(pixels), np.inf)
     return owner, np.hypot(*(pixels - vertices[owner]).T)
+
+
+def _seize(skeleton: Skeleton, corners: Points, owners: Indices, shape: tuple[int, int], reach_px: float) -> None:
+    """Give each corner beside the skeleton the nearest pixel of it, when that is in reach and free."""
+    idle = np.setdiff1d(np.arange(len(corners)), owners)
+    if not idle.size or not len(owners):
+        return
+    pixels = nearest(skeleton.pixels.astype(np.float64), shape)
+    x, y = np.rint(corners[idle]).astype(np.intp).T
+    pixel = pixels.vertex[y, x]
+    free = (pixels.distance_px[y, x] <= reach_px) & (owners[pixel] < 0)
+    owners[pixel[free]] = idle[free]
 
 
 def _claim(cluster: Indices, owner: Indices, distance: Floats, owners: Indices, reach_px: float) -> Indices | None:

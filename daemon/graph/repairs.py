@@ -17,7 +17,7 @@ _GAP_PX = 2.0
 _GAP_SHARE = 0.06
 _EDGE_PX = 0.6
 _TWICE_SHARE = 0.8
-_NEAR_PX = 3.0
+_THROUGH_PX, _NEAR_PX = 1.5, 3.0
 
 
 def without_gap(ink: Mask, starts: Points, ends: Points) -> NDArray[np.bool_]:
@@ -53,8 +53,8 @@ def _little(bare: Floats, samples: Samples, starts: Points, ends: Points) -> NDA
 def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -> NDArray[np.bool_]:
     """Which pairs pass by a corner that they should end in (rule *suppression*).
 
-    p-r is refused when a corner q lies within 3 px of the segment and p-q and q-r are known to be joined: every
-    crossing is a corner, so no true edge passes through one. corners: (C, 2) in px; pairs, known: (P, 2) and (K, 2)
+    p-r is refused when a corner q lies within 1.5 px of the segment, or within 3 px and p-q and q-r are known to be
+    joined: every crossing is a corner, so no true edge passes through one. corners: (C, 2) in px; pairs, known: (P, 2) and (K, 2)
     indices of corners, lower first; near: the nearest corner of each pixel.
     """
     samples = sampled(corners[pairs[:, 0]], corners[pairs[:, 1]], trim_px=0.0)
@@ -65,7 +65,8 @@ def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -
     p, q, r, segment = p[hit], between[hit], r[hit], samples.segment[hit]
     ahead = _is_between(corners, p, q, r)
     keys = np.sort(known[:, 0] * len(corners) + known[:, 1])
-    joined = _known(p, q, keys, corners) & _known(q, r, keys, corners) & ahead
+    through = near.distance_px[y, x][hit] <= _THROUGH_PX
+    joined = (through | (_known(p, q, keys, corners) & _known(q, r, keys, corners))) & ahead
     refused = np.zeros(len(pairs), bool)
     refused[segment[joined]] = True
     return refused
@@ -101,10 +102,11 @@ def _flat(points: Points, shape: tuple[int, ...]) -> Indices:
 
 
 def _is_between(corners: Points, p: Indices, q: Indices, r: Indices) -> NDArray[np.bool_]:
-    """Whether q's foot lies inside the segment p-r."""
+    """Whether q's foot lies inside the segment p-r, more than a pixel from either end."""
     along = corners[r] - corners[p]
-    share = ((corners[q] - corners[p]) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-9)
-    return np.asarray((share > 0) & (share < 1))
+    length = np.maximum(np.hypot(*along.T), 1e-9)
+    foot_px = ((corners[q] - corners[p]) * along).sum(axis=1) / length
+    return np.asarray((foot_px > 1.0) & (foot_px < length - 1.0))
 
 
 def _known(a: Indices, b: Indices, known: Indices, corners: Points) -> NDArray[np.bool_]:

@@ -19,7 +19,7 @@ _FIT_FROM_PX, _FIT_TO_PX = 1.5, 6.0
 """Stretch of an edge beyond the junction's own ink that says where the edge enters its vertex."""
 _PASSES = 4
 _STRAIGHT_PX = 0.05
-_MOVE_PX, _JUNCTION_MOVE_PX = 0.8, 2.5
+_MOVE_PX, _JUNCTION_MOVE_PX = 1.5, 2.5
 _HOLD = 0.05
 """Weight with which a vertex holds its place against the lines that meet in it."""
 

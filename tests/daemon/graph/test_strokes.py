@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -22,7 +24,7 @@ def drawn(graph: LineGraph, **options: str) -> Drawing:
 
 def segments(drawing: Drawing) -> list[tuple[tuple[float, float], ...]]:
     walks = of_points(drawing)
-    return sorted(tuple(sorted(pair)) for walk in walks for pair in zip(walk, walk[1:], strict=False))
+    return sorted(tuple(sorted(pair)) for walk in walks for pair in pairwise(walk))
 
 
 def fewest(pairs: set[tuple[int, int]]) -> int:
