@@ -20,12 +20,13 @@ from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing, OpenMachine
 from daemon.jobs.folder import JobFolders, make_folder
 from daemon.jobs.journal import Journal
+from daemon.jobs.pens import pen_of
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
 from daemon.machine.open import check_url, open_machine
 from daemon.program.file import load_program
-from daemon.program.gcode import Pen, ServoPen, ZPen, lift_lines
+from daemon.program.gcode import lift_lines
 from daemon.status import Diary, StatusBoard
 from firmware_protocol.grbl.ink import PenRule
 from firmware_protocol.session import Event
@@ -84,19 +85,12 @@ def _opened(machine: Machine, hear: Callable[[Event], None]) -> OpenMachine:
         machine.url,
         baud=machine.baud,
         flow=machine.flow,
-        lift=lift_lines(_pen(machine)),
+        lift=lift_lines(pen_of(machine)),
         lift_after_restart=machine.lift_after_restart,
         home=machine.origin == "homed",
         touches=_touches(machine),
         heard=hear,
     )
-
-
-def _pen(machine: Machine) -> Pen:
-    pen = machine.pen
-    if isinstance(pen, ZPenSettings):
-        return ZPen(pen.up_mm, pen.down_mm, pen.plunge_mm_s)
-    return ServoPen(pen.up_s, pen.down_s, pen.dwell_s)
 
 
 def _touches(machine: Machine) -> PenRule:
@@ -124,11 +118,14 @@ def _only_one(state_dir: Path) -> Iterator[None]:
 
 
 class Service:
-    """The daemon. `run` returns after `end`, with the pen up and every thread gone."""
+    """The daemon. `run` returns after `end`, with the pen up and every thread gone.
+
+    A thread that dies takes the daemon with it, in order: half a daemon would look like one that works.
+    """
 
     def __init__(self, settings: Settings, parts: Parts) -> None:
         paths = settings.paths
-        self._parts, self._ended = parts, threading.Event()
+        self._parts, self._ended, self._asked = parts, threading.Event(), False
         inbox = Inbox(
             paths.inbox,
             settle_s=settings.intake.settle_s,
@@ -140,20 +137,29 @@ class Service:
         self._control = ControlServer(paths.control, self._obey)
         self._inbox_dir = paths.inbox
 
-    def run(self) -> None:
+    def run(self) -> bool:
+        """True when it ended because it was told to."""
         parts = self._parts
         parts.diary.say("linedrawd starts", version=__version__, inbox=self._inbox_dir)
         parts.board.change(state="idle")
         parts.desk.recover(self._inbox_dir)
         works = [parts.runner.plan_on, parts.runner.draw_on, self._watch.run, self._control.run, parts.board.run]
-        threads = [threading.Thread(target=work, name=work.__qualname__, daemon=True) for work in works]
+        threads = [threading.Thread(target=self._work, args=(work,), name=work.__qualname__) for work in works]
         for thread in threads:
             thread.start()
         self._ended.wait()
         self._end(threads)
+        return self._asked
+
+    def _work(self, work: Callable[[], None]) -> None:
+        try:
+            work()
+        finally:
+            self._ended.set()
 
     def end(self) -> None:
         """May be called from any thread and from a signal handler."""
+        self._asked = True
         self._ended.set()
 
     def end_on_signals(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import shutil
+import signal
 import sys
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import suppress
@@ -41,6 +42,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0 when it is drawn. Raises the LinedrawError that says why not."""
+    # Whatever ends this command lifts the pen first.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     settings = settings_of(args, machine_needed=True)
     if not args.picture.is_file():
         raise LinedrawError(f"there is no file {args.picture}: give the path of a picture")

@@ -9,10 +9,9 @@ from daemon.service import Service, parts_of
 
 
 def run(args: argparse.Namespace) -> int:
-    """Until SIGTERM. Without a machine it keeps running and waits for one."""
+    """Until SIGTERM. Without a machine it keeps running and waits for one. 1 when a mistake of ours ended it."""
     settings = settings_of(args, machine_needed=True)
     with parts_of(settings, verbose=verbose(args)) as parts:
         service = Service(settings, parts)
         service.end_on_signals()
-        service.run()
-    return 0
+        return 0 if service.run() else 1

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 
 import pytest
 
@@ -163,9 +163,17 @@ def test_stop_freezes_the_queue_and_go_frees_it(tmp_path: Path) -> None:
 
 
 def test_an_end_in_mid_drawing_lifts_the_pen_and_leaves_the_job_interrupted(tmp_path: Path) -> None:
-    with running(settings_of(tmp_path, port="sim://grbl?speed=0.5")) as daemon:
+    with running(settings_of(tmp_path, port="sim://grbl?speed=1")) as daemon:
+        show, begun = daemon.parts.desk.show, Event()
+
+        def show_and_tell(**values: object) -> None:
+            show(**values)
+            if values.get("percent"):
+                begun.set()
+
+        daemon.parts.desk.show = show_and_tell
         daemon.drop("a.png")
-        daemon.wait_for(lambda jobs: jobs and jobs[0].state is State.DRAWING)
+        assert begun.wait(20)
     log = daemon.log()
     assert "state=interrupted" in log
     assert "the pen is up" in log
@@ -180,6 +188,18 @@ def test_a_second_daemon_on_the_same_folder_is_refused_and_names_the_first(tmp_p
         parts_of(settings, planner=PLANNER),
     ):
         pass
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_thread_that_dies_ends_the_daemon_in_order(tmp_path: Path) -> None:
+    settings = settings_of(tmp_path)
+    with parts_of(settings, planner=PLANNER) as parts:
+        service = Service(settings, parts)
+        # A row that the code cannot have written is a mistake that no room expects.
+        parts.desk.journal.add("000001-a", "a.png")
+        (settings.paths.inbox / "a.png").write_text("good")
+        assert service.run() is False
+    assert json.loads(settings.paths.status.read_text())["state"] == "ended"
 
 
 def test_the_daemons_own_process_loads_no_network_no_vision_and_no_arrays() -> None:

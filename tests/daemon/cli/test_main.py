@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -17,13 +18,15 @@ from tests.daemon.jobs.test_pool import PLANNER
 
 
 @pytest.fixture(autouse=True)
-def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """Nobody's settings, and the second planner in place of the network."""
     monkeypatch.setenv("HOME", str(tmp_path))
     for name in ("XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "STATE_DIRECTORY", "LOGS_DIRECTORY"):
         monkeypatch.delenv(name, raising=False)
+    before = signal.getsignal(signal.SIGTERM)
     monkeypatch.setattr(daemon.jobs.pool, "PLANNER", PLANNER)
-    return tmp_path
+    yield tmp_path
+    signal.signal(signal.SIGTERM, before)
 
 
 def picture(folder: Path, text: str = "good", name: str = "house.png") -> str:
@@ -158,3 +161,34 @@ def test_the_daemon_runs_until_it_is_told_to_end_and_its_status_outlives_it(
     said = capsys.readouterr().out
     assert "no daemon runs" in said
     assert "held           a person stopped the machine" in said
+
+
+SIGNALLED = """
+import os, sys
+import daemon.jobs.pool
+from daemon.cli.__main__ import main
+from daemon.status import StatusBoard
+
+change, sent = StatusBoard.change, []
+
+def change_and_signal(board, **values):
+    change(board, **values)
+    if values.get("percent") and not sent:
+        sent.append(os.kill(os.getpid(), NUMBER))
+
+StatusBoard.change = change_and_signal
+daemon.jobs.pool.PLANNER = PLANNER
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_a_drawing_with_the_pen_up(home: Path, number: signal.Signals) -> None:
+    """It comes when the controller has taken the first line."""
+    program = SIGNALLED.replace("NUMBER", str(int(number))).replace("= PLANNER", f"= {PLANNER!r}")
+    arguments = ["draw", picture(home), "-v", "--port", "sim://grbl?speed=1", *state(home)]
+    command = [sys.executable, "-c", program, *arguments]
+    ran = subprocess.run(command, check=False, capture_output=True, text=True, timeout=30)
+    assert ran.returncode == 1
+    assert "state=cancelled" in ran.stderr
+    assert "the pen is up" in ran.stderr

@@ -165,3 +165,7 @@ class Bench:
     def close(self) -> None:
         with closing(self.journal), closing(self.pool):
             pass
+
+
+def fault(verdict: Verdict) -> Ended:
+    return Ended(verdict, 1, 2, verdict is Verdict.REJECTED, False, f"{verdict.value} at line 7: look at it")
