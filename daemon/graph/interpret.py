@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from daemon.graph.anchors import anchored
+from daemon.graph.bends import sharpened
 from daemon.graph.feedback import Adaptation
 from daemon.graph.plausibility import values_at
 from daemon.graph.ridge import onto_ridge
@@ -112,7 +113,7 @@ def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> Lin
     straight = straight_edges(segmentation, nodes, skeleton, found, ink.lines, adaptation, width_px=width_px)
     traced = unexplained(found, skeleton, nodes.vertices, straight, shape, width_px=width_px)
     polylines = [nodes.vertices[pair] for pair in straight]
-    polylines += [chain_points(skeleton, chain, nodes.vertices) for chain in traced]
+    polylines += [sharpened(chain_points(skeleton, chain, nodes.vertices), ink.lines) for chain in traced]
     ends = np.array([*straight.tolist(), *((chain.start, chain.end) for chain in traced)], np.intp).reshape(-1, 2)
     if not polylines:
         return LineGraph(np.empty((0, 2)), ())

@@ -54,8 +54,8 @@ def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -
     """Which pairs pass by a corner that they should end in (rule *suppression*).
 
     p-r is refused when a corner q lies within 1.5 px of the segment, or within 3 px and p-q and q-r are known to be
-    joined: every crossing is a corner, so no true edge passes through one. corners: (C, 2) in px; pairs, known: (P, 2) and (K, 2)
-    indices of corners, lower first; near: the nearest corner of each pixel.
+    joined: every crossing is a corner, so no true edge passes through one. corners: (C, 2) in px; pairs, known: (P, 2)
+    and (K, 2) indices of corners, lower first; near: the nearest corner of each pixel.
     """
     samples = sampled(corners[pairs[:, 0]], corners[pairs[:, 1]], trim_px=0.0)
     x, y = np.rint(samples.points).astype(np.intp).T

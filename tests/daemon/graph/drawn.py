@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 
@@ -20,7 +22,7 @@ def page(lines: Lines, *, size: int = 128, width_px: int = 2) -> PageImage:
     return PageImage(grey, np.eye(2, 3), size, size, "")
 
 
-def channels(drawn: PageImage, corners: list[tuple[float, float]]) -> Segmentation:
+def channels(drawn: PageImage, corners: Sequence[tuple[float, float]]) -> Segmentation:
     """Discs of 13 px on the corners, lines where there is other ink."""
     is_corner = np.zeros(drawn.grey.shape, bool)
     for x, y in corners:
