@@ -96,7 +96,8 @@ def test_settings_pen_and_faults_come_from_the_url_or_the_arguments() -> None:
 
 
 @pytest.mark.parametrize(
-    "query", ["", "grbl/x", "emco", "grbl?sped=1", "grbl?999=1", "grbl?hang=x", "grbl?hang=@x", "grbl?speed=x", "grbl?pen_s=x"]
+    "query",
+    ["", "grbl/x", "emco", "grbl?sped=1", "grbl?999=1", "grbl?hang=x", "grbl?hang=@x", "grbl?speed=x", "grbl?pen_s=x"],
 )
 def test_a_url_that_says_nothing_is_refused_with_an_example(query: str) -> None:
     with pytest.raises(SettingsError, match="write"):
