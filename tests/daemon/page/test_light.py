@@ -50,6 +50,13 @@ def test_what_was_drawn_comes_out_black_on_white(grey: Grey) -> None:
     assert np.percentile(flat[drawn() < 20], 50) < 40
 
 
+def test_strong_grain_leaves_few_specks_on_the_paper_and_few_holes_in_the_ink() -> None:
+    flat = flatten_light(page(grain(drawn(ink=150, paper=200), 12))).grey
+    far_from_ink = cv2.dilate(255 - drawn(), np.ones((9, 9), np.uint8)) == 0
+    assert (flat[far_from_ink] < 128).mean() < 0.0002
+    assert (flat[drawn() < 20] > 128).mean() < 0.01
+
+
 def test_the_edge_of_a_shadow_is_no_line() -> None:
     grey = drawn()
     grey[:, 140:] = grey[:, 140:] // 2

@@ -84,7 +84,9 @@ def test_a_park_position_out_of_reach_is_named() -> None:
 
 def test_a_drawing_that_just_fits_is_drawn() -> None:
     edge = drawing([(-0.5, -0.5), (100.5, 100.5)])
-    assert plan_toolpath(edge, reach_mm=(89, 89)).strokes[0].points.max() == pytest.approx(89)
+    for side_mm in (64, 64.1, 33.3, 0.7):
+        toolpath = plan_toolpath(edge, box_mm=(side_mm, side_mm), reach_mm=(25 + side_mm, 25 + side_mm))
+        assert toolpath.strokes[0].points.max() == pytest.approx(25 + side_mm)
 
 
 def test_a_drawing_without_strokes_is_refused() -> None:
