@@ -184,7 +184,7 @@ class Drawing:
         try:
             _add_to_report(folder / "report.json", real_s)
             if ink is not None:
-                write_durably(folder / "ink.json", json.dumps({"strokes": ink, "real_s": real_s}).encode())
+                write_durably(folder / "ink.json", json.dumps({"strokes": ink}).encode())
                 self._measure(folder)
         except (LinedrawError, ValueError) as error:
             self._desk.trouble(f"the report is not complete: {error}", job=job.id)

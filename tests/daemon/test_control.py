@@ -71,6 +71,8 @@ def test_those_who_say_nothing_keep_nobody_out(path: Path) -> None:
         connection.connect(str(path))
         idle.append(connection)
     assert give_order(path, Order(order="ping")) == "done: ping"
+    idle[0].settimeout(10)
+    assert idle[0].recv(1) == b""
     for connection in idle:
         connection.close()
 

@@ -55,6 +55,14 @@ def test_a_cancelled_drawing_is_stopped_and_the_next_one_starts(bench: Bench) ->
     assert bench.machine.stops == 1
 
 
+def test_a_job_cancelled_just_before_the_first_line_is_not_drawn(bench: Bench) -> None:
+    job = bench.planned()
+    bench.before_drawing = lambda: bench.runner.cancel(job)
+    bench.drawing.turn()
+    assert bench.states() == ["cancelled"]
+    assert bench.machine.drawn == 0
+
+
 def test_a_waiting_job_is_cancelled_by_its_number(bench: Bench) -> None:
     bench.planned()
     assert bench.runner.cancel("1") == "job 000001-a is dropped (it was planned)"

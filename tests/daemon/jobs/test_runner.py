@@ -96,10 +96,11 @@ def test_a_fault_interrupts_the_job_and_no_further_one_starts_until_a_person_say
 
 def test_a_refused_line_fails_the_job_and_holds_the_others_on_the_same_port(bench: Bench) -> None:
     bench.machine.endings = [fault(Verdict.REJECTED)]
-    bench.planned()
-    bench.drawing.turn()
-    assert bench.states() == ["failed"]
-    assert bench.desk.held
+    bench.planned("a.png")
+    bench.planned("b.png")
+    for _ in range(3):
+        bench.drawing.turn()
+    assert bench.states() == ["failed", "planned"]
     assert bench.machine.closed == 0
 
 
