@@ -15,6 +15,7 @@ from training.render import Points, Sample, crossings, draw, label
 BEND_PX = 5
 BEND_DEGREES = 50.0
 _STEP_PX = 1.0
+_CLOSED_WITHIN_PX = 1.5
 
 
 def smooth(stroke: NDArray[np.float32], sigma_points: float) -> Points:
@@ -23,11 +24,13 @@ def smooth(stroke: NDArray[np.float32], sigma_points: float) -> Points:
     if len(stroke) < 3 or reach == 0:
         return stroke.astype(float)
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma_points) ** 2)
-    # Mirrored through the end points, so that the ends stay where they are.
-    before = 2 * stroke[0] - stroke[1 : reach + 1][::-1]
-    after = 2 * stroke[-1] - stroke[-reach - 1 : -1][::-1]
-    padded = np.concatenate([_lengthen(before, reach, 0), stroke, _lengthen(after, reach, -1)])
-    return np.stack([np.convolve(padded[:, k], kernel / kernel.sum(), "valid") for k in (0, 1)], axis=1)
+    # Mirrored through the end points; a stroke shorter than the kernel is pulled back to its ends.
+    before, after = 2 * stroke[0] - stroke[reach:0:-1], 2 * stroke[-1] - stroke[-2 : -reach - 2 : -1]
+    padded = np.concatenate([before, stroke, after])
+    padded = np.pad(padded, ((reach - len(before), reach - len(after)), (0, 0)), mode="edge")
+    done = np.stack([np.convolve(padded[:, k], kernel / kernel.sum(), "valid") for k in (0, 1)], axis=1)
+    done[[0, -1]] = stroke[[0, -1]]
+    return done
 
 
 def curves(strokes: Sequence[Points], canvas_px: int, line_px: int) -> Sample:
@@ -37,9 +40,11 @@ def curves(strokes: Sequence[Points], canvas_px: int, line_px: int) -> Sample:
     if not even:
         return Sample(ink, np.zeros_like(ink))
     draw(ink, even, line_px)
-    corners = [stroke[[0, -1]] for stroke in even if _length(stroke[[0, -1]]) > 1.5]
+    corners = [stroke[[0, -1]] for stroke in even if not _closed(stroke)]
     corners += [stroke[sharp_bends(stroke)] for stroke in even]
-    corners.append(_far_from(crossings([resample(s, 3.0) for s in even]), corners))
+    # Where a closed stroke meets itself is no crossing, only a corner if it bends there.
+    known = [*corners, *(stroke[:1] for stroke in even if _closed(stroke))]
+    corners.append(_far_from(crossings([resample(s, 3.0) for s in even]), known))
     return Sample(ink, label(ink, np.rint(np.concatenate(corners)).astype(np.int32)))
 
 
@@ -48,6 +53,14 @@ def sharp_bends(even: Points) -> NDArray[np.intp]:
     k = int(round(BEND_PX / _STEP_PX))
     if len(even) < 2 * k + 1:
         return np.zeros(0, np.intp)
+    if _closed(even):
+        turned = sharp_bends_open(np.concatenate([even[-2 * k - 1 : -1], even, even[1 : 2 * k + 1]]), k) - 2 * k
+        return turned[(turned >= 0) & (turned < len(even) - 1)]
+    return sharp_bends_open(even, k)
+
+
+def sharp_bends_open(even: Points, k: int) -> NDArray[np.intp]:
+    """Indices, none of the first or last k, where the angle between the k steps before and after has a high maximum."""
     into, out = even[k:-k] - even[: -2 * k], even[2 * k :] - even[k:-k]
     turn = np.abs(np.arctan2(into[:, 0] * out[:, 1] - into[:, 1] * out[:, 0], (into * out).sum(axis=1)))
     padded = np.pad(turn, k)
@@ -93,14 +106,9 @@ def _far_from(points: Points, others: Sequence[Points], least_px: float = 3.0) -
     return points[distance > least_px]
 
 
+def _closed(even: Points) -> bool:
+    return len(even) > 4 and float(np.hypot(*(even[-1] - even[0]))) <= _CLOSED_WITHIN_PX
+
+
 def _length(points: Points) -> float:
     return float(np.hypot(*np.diff(points, axis=0).T).sum())
-
-
-def _lengthen(points: NDArray[np.floating], count: int, end: int) -> NDArray[np.floating]:
-    """Exactly `count` rows: the outermost one repeated where the stroke was shorter."""
-    missing = count - len(points)
-    if missing <= 0:
-        return points
-    extra = np.repeat(points[[end if end else 0]], missing, axis=0)
-    return np.concatenate([points, extra]) if end else np.concatenate([extra, points])

@@ -100,7 +100,7 @@ class MirrorUNet(nn.Module):
             entering = width if level == shape.d else 2 * width
             self.mirrors.append(blocks(up, [entering] + [width] * r, [k2] * r, norm))
         self.last = blocks(up, [2 * c[0]] + [c[0]] * (r - 1), [k2] * (r - 1), norm)
-        self.logits = up(c[0], len(CLASSES), shape.k1)
+        self.logits = up(c[0] if r > 1 else 2 * c[0], len(CLASSES), shape.k1)
 
     def forward(self, x: Tensor) -> Tensor:
         x = self.first(x)

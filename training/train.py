@@ -62,6 +62,8 @@ class Config:
     bf16: bool = True
     threads: int = 0
     start: str | None = None
+    validation: int = 160
+    """Held-out sketches that the validation is measured on."""
 
 
 @dataclass(slots=True)
@@ -249,8 +251,9 @@ def _floats(state: dict[str, Tensor]) -> dict[str, Tensor]:
     return {name: value.float() if value.is_floating_point() else value for name, value in state.items()}
 
 
-def validation_sets(config: Config, count: int = 160) -> dict[str, list[Sample]]:
+def validation_sets(config: Config) -> dict[str, list[Sample]]:
     """`paper`: reference renderings of held-out simplified sketches; `curved`: canvases of held-out raw ones."""
+    count = config.validation
     held = quickdraw.read([Path(config.data)], limit=count)
     sets = {"paper": [reference(held[k]) for k in range(len(held))]}
     if config.raw:

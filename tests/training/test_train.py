@@ -1,0 +1,99 @@
+"""A tiny network learns, goes on where it was stopped, and becomes a file that answers the same."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+import onnxruntime  # noqa: E402
+
+from training import export, train  # noqa: E402
+from training.network import MirrorUNet, Shape  # noqa: E402
+
+pytestmark = [pytest.mark.training, pytest.mark.filterwarnings("ignore")]
+
+TINY = [
+    "--net",
+    "9,3,2,2",
+    "--channels",
+    "8,12,16",
+    "--threads",
+    "1",
+    "--wide-every",
+    "0",
+    "--no-bf16",
+    "--validation",
+    "16",
+]
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Zigzags of our own, as many as the validation set takes and some to learn from."""
+    random = np.random.default_rng(3)
+    path = tmp_path_factory.mktemp("data") / "zigzags.ndjson"
+    with path.open("w") as file:
+        for _ in range(train.HELD_OUT + 200):
+            strokes = [random.integers(0, 256, (2, random.integers(2, 6))).tolist() for _ in range(2)]
+            file.write(json.dumps({"word": "zigzag", "drawing": strokes}) + "\n")
+    return path
+
+
+def run(data: Path, out: Path, *more: str) -> list[dict[str, float]]:
+    assert train.main(["--data", str(data), "--out", str(out), *TINY, *more]) == 0
+    history: list[dict[str, float]] = json.loads((out / "history.json").read_text())
+    return history
+
+
+def test_learning_finds_corners(data: Path, tmp_path: Path) -> None:
+    """Seconds are enough for a small net to leave the floor (an untrained one stays below 5 %)."""
+    before = run(data, tmp_path / "a", "--images", "4")[-1]
+    after = run(data, tmp_path / "b", "--images", "480", "--optimiser", "muon", "--learning-rate", "0.02")[-1]
+    assert after["paper_corners"] > 30.0 > before["paper_corners"]
+    assert after["paper_mean"] > before["paper_mean"] + 20.0
+
+
+def test_a_stopped_run_goes_on_as_if_it_had_not_been(data: Path, tmp_path: Path) -> None:
+    """Same weights, bit for bit, on one thread."""
+    rate = ["--warm-up", "0", "--fall", "0", "--plain-share", "0"]
+    run(data, tmp_path / "whole", "--images", "16", *rate)
+    run(data, tmp_path / "parts", "--images", "8", *rate)
+    run(data, tmp_path / "parts", "--images", "16", "--resume", *rate)
+    whole, parts = (torch.load(tmp_path / name / "checkpoint.pt")["net"] for name in ("whole", "parts"))
+    assert all(torch.equal(whole[key], parts[key]) for key in whole)
+
+
+@pytest.mark.parametrize("batch_norm", [False, True])
+def test_the_exported_graph_answers_like_the_network(batch_norm: bool) -> None:
+    """The rewrite of transposed convolutions and the folding of normalisation are exact."""
+    torch.manual_seed(5)
+    net = MirrorUNet(Shape(7, 3, 2, 2, (5, 6, 7), batch_norm))
+    for module in net.modules():
+        if isinstance(module, torch.nn.BatchNorm2d):
+            module.running_mean.normal_()
+            module.running_var.uniform_(0.5, 2.0)
+            torch.nn.init.normal_(module.weight)
+    ink = torch.rand(2, 1, 79, 79)
+    with torch.inference_mode():
+        expected = net.eval()(ink).numpy()
+    session = onnxruntime.InferenceSession(export.build(net).SerializeToString())
+    (answer,) = session.run(None, {"ink": ink.numpy()})
+    assert np.abs(answer - expected).max() <= 1e-4
+
+
+def test_the_int8_file_agrees_with_the_float_network(data: Path, tmp_path: Path) -> None:
+    run(data, tmp_path / "run", "--images", "160", "--optimiser", "muon", "--learning-rate", "0.02")
+    checkpoint, model = tmp_path / "run" / "checkpoint.pt", tmp_path / "small.onnx"
+    assert export.main([str(checkpoint), "--data", str(data), "-o", str(model)]) == 0
+    manifest = json.loads(model.with_suffix(".json").read_text())
+    assert manifest["labels"] == ["background", "lines", "corners"]
+    ink = train.validation_sets(train.parse(["--data", str(data), "--out", "x", "--validation", "8"])[0])["paper"]
+    batch = train.stack(ink).ink
+    (said,) = onnxruntime.InferenceSession(str(model)).run(None, {"ink": batch})
+    with torch.inference_mode():
+        expected = export.load(checkpoint)(torch.from_numpy(batch)).numpy()
+    assert (said.argmax(1) == expected.argmax(1)).mean() > 0.995
