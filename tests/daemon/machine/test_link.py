@@ -22,7 +22,14 @@ PROGRAM = (ProgramLine("G0 Z5"), *(ProgramLine(text, stroke) for stroke in range
 
 
 class Unattended(SimulatedTransport):
-    """A machine whose daemon is busy elsewhere for a while."""
+    """A machine whose daemon is busy elsewhere for a while, or whose port takes no byte."""
+
+    clogged = False
+
+    def write(self, data: bytes) -> None:
+        if self.clogged:
+            raise MachineFault("takes no more bytes")
+        super().write(data)
 
     def pass_s(self, seconds: float) -> None:
         self._now += seconds
@@ -147,6 +154,13 @@ def test_an_unplugged_machine_is_an_end_of_the_job() -> None:
     table.link.connect()
     ended = table.link.draw(PROGRAM)
     assert (ended.verdict, table.heard[-1]) == (Verdict.UNPLUGGED, ended)
+
+
+def test_a_port_that_takes_no_byte_is_an_end_of_the_job() -> None:
+    table = Table()
+    table.link.connect()
+    table.transport.clogged = True
+    assert table.link.draw(PROGRAM).verdict is Verdict.UNPLUGGED
 
 
 def test_a_job_that_cannot_be_sent_is_a_fault_that_names_the_line() -> None:

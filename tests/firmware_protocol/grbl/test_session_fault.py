@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firmware_protocol.session import Verdict
+from firmware_protocol.session import Accepted, Verdict
 from tests.firmware_protocol.grbl.driver import ALARM, BANNER, BARRIER, HELD, IDLE, RUN, UNLOCK, Line, Play, drawing
 
 
@@ -46,6 +46,7 @@ def test_a_restart_empties_the_controller_and_then_only_lifts_the_pen() -> None:
     assert (end.verdict, end.position_known, end.pen_lifted) == (Verdict.RESTARTED, False, True)
     assert (end.strokes_certain, end.strokes_possible) == (0, 2)
     assert "restarted by itself" in end.why
+    assert play.told == [Accepted(0), end]
     assert after(play) == b""
 
 

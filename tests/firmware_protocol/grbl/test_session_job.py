@@ -103,6 +103,14 @@ def test_homing_inside_a_job_is_not_silence() -> None:
     assert play.told == [Accepted(0)]
 
 
+def test_a_question_that_homing_swallowed_is_not_silence_afterwards() -> None:
+    play = drawing(Line("$H"), Line("G1X1F500", 0))
+    play.wait(60.0)
+    play.say("ok")
+    play.wait(4.9)
+    assert play.told == [Accepted(0)]
+
+
 def test_unasked_messages_and_strange_lines_change_nothing() -> None:
     play = drawing()
     play.say("[MSG:Pgm End]", ">G20:ok", "$1=25", "o", "[GC:G0]")
