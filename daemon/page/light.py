@@ -20,7 +20,7 @@ _BLACK = 96
 _MOST_UNEVEN_SHARE = 0.02
 _DARKEST_PAPER_SHARE = 0.35
 """What is darker than this share of the lit paper is filled with ink, no shadow."""
-_GRAIN_SHARE = 0.07
+_GRAIN_SHARE = 0.05
 _GRAIN_BLUR_PX = 0.8
 
 
