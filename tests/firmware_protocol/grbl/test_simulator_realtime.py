@@ -53,8 +53,7 @@ def test_a_hold_keeps_the_position_and_the_motion_goes_on_where_it_stopped() -> 
 
 def test_a_hold_runs_over_the_ends_of_short_moves() -> None:
     conversation = talk()
-    conversation.stream([f"G1X{n / 10}F3000" for n in range(1, 15)])
-    conversation.stream([f"G1X{n / 10}F3000" for n in range(15, 120)])
+    conversation.stream([f"G1X{n / 10}F600" for n in range(1, 120)])
     conversation.ask("!", within_s=1.0)
     held = conversation.sim.position_mm[0]
     assert held < 12.0
