@@ -91,6 +91,13 @@ def test_a_missed_crossing_is_found_on_the_ink() -> None:
     assert agrees(graph, TEE, within_px=1.6)
 
 
+def test_a_wide_bow_with_a_missed_branch_is_not_cut_by_a_chord() -> None:
+    bow = [(x, 60 + 2.2 * ((x - 64) / 36) ** 2) for x in np.linspace(28, 100, 73).tolist()]
+    lines: Lines = [bow, [(64, 60), (64, 20)]]
+    drawn = page(lines, width_px=4)
+    assert agrees(interpret(drawn, channels(drawn, [bow[0], bow[-1], (64, 20)])), lines, within_px=1.2)
+
+
 def test_a_crossing_joins_four_edges() -> None:
     drawn = page(CROSS)
     graph = interpret(drawn, channels(drawn, [*CROSS[0], *CROSS[1], (64, 64)]))

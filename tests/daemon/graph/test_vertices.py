@@ -24,7 +24,7 @@ def test_a_disc_is_a_vertex_at_its_centre() -> None:
     assert corner_vertices(corners_at((10, 12)), ALL_INK).tolist() == [[10, 12]]
 
 
-@pytest.mark.parametrize("second", [(13, 12), (10, 15), (13, 14), (14, 12), (12, 15)])
+@pytest.mark.parametrize("second", [(11, 12), (12, 12), (13, 12), (10, 15), (13, 14), (14, 12), (12, 15)])
 def test_melted_discs_are_split(second: tuple[int, int]) -> None:
     melted = corners_at((10, 12), second)
     assert len(centroids(melted)) == 1
