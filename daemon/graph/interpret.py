@@ -11,6 +11,7 @@ import numpy as np
 from daemon.graph.anchors import anchored
 from daemon.graph.bends import sharpened
 from daemon.graph.feedback import Adaptation
+from daemon.graph.joints import joined
 from daemon.graph.plausibility import values_at
 from daemon.graph.ridge import onto_ridge
 from daemon.graph.skeleton import chain_points, chains, thinned
@@ -117,6 +118,7 @@ def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> Lin
     ends = np.array([*straight.tolist(), *((chain.start, chain.end) for chain in traced)], np.intp).reshape(-1, 2)
     if not polylines:
         return LineGraph(np.empty((0, 2)), ())
+    polylines, ends = joined(polylines, ends, nodes.vertices)
     polylines, vertices = onto_ridge(polylines, ends, nodes.vertices, ink.shades, width_px=width_px)
     response = segmentation.lines + segmentation.corners
     scores = [float(values_at(response, polyline).mean()) for polyline in polylines]
