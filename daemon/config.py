@@ -122,6 +122,8 @@ class Machine(Section):
     draw_mm_s: Annotated[float, Field(gt=0, le=1000)] = 20.0
     pen: PenSettings = ZPenSettings(kind="z")
     dialect: Literal["grbl", "paper"] = "grbl"
+    units: Literal["mm", "cm", "inch"] = "mm"
+    """Of a program in the paper's dialect, which does not say its units itself."""
     sheet: Literal["ask", "feed", "auto"] = "auto"
     """"ask": wait for a person after each drawing; "feed": draw on; "auto": feed on a simulated machine, else ask."""
     lift_after_restart: bool = True

@@ -25,9 +25,12 @@ from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
 from daemon.machine.open import check_url, open_machine
+from daemon.machine.ports import find_grbl
+from daemon.machine.serial_port import adapters
 from daemon.program.file import load_program
 from daemon.program.gcode import lift_lines
 from daemon.status import Diary, StatusBoard
+from daemon.usb import inventory
 from firmware_protocol.grbl.ink import PenRule
 from firmware_protocol.session import Event
 
@@ -82,7 +85,7 @@ def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None =
 
 def _opened(machine: Machine, hear: Callable[[Event], None]) -> OpenMachine:
     return open_machine(
-        machine.url,
+        machine.url if machine.url != "auto" else find_grbl(adapters(), on_usb=inventory().ids),
         baud=machine.baud,
         flow=machine.flow,
         lift=lift_lines(pen_of(machine)),

@@ -1,7 +1,8 @@
 """Training canvases, rendered on the fly: one number in, always the same canvas out.
 
-Two families. *Paper*: the reference rendering, half of the canvases with two or three sketches on them. *Curved*: raw pen
-paths, smooth, 1 to 4 px wide, some zoomed beyond the canvas (a tile of a large page), some blurred, faint or grainy.
+Two families. *Paper*: the reference rendering, half of the canvases with two or three sketches on them. *Curved*: raw
+pen paths and splines, smooth, 1 to 4 px wide, some zoomed beyond the canvas (a tile of a large page), some blurred,
+faint or grainy.
 """
 
 from __future__ import annotations

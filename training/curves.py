@@ -1,4 +1,4 @@
-"""Curved ink from raw pen paths: smooth, at sub-pixel places, of several widths, with corners only where a person sees one.
+"""Curved ink: smooth, at sub-pixel places, of several widths, with corners only where a person sees one.
 
 A corner is an end, a crossing, or a sharp bend: a local maximum of the turning angle over +-5 px above 50 degrees.
 """
@@ -50,7 +50,7 @@ def curves(strokes: Sequence[Points], canvas_px: int, line_px: int) -> Sample:
 
 def sharp_bends(even: Points) -> NDArray[np.intp]:
     """Indices of sharp bends on a polyline resampled at 1 px."""
-    k = int(round(BEND_PX / _STEP_PX))
+    k = round(BEND_PX / _STEP_PX)
     if len(even) < 2 * k + 1:
         return np.zeros(0, np.intp)
     if _closed(even):
@@ -92,7 +92,7 @@ def _spline(random: np.random.Generator) -> Points:
 def resample(points: Points, step_px: float) -> Points:
     """Points at about equal distances along the polyline, both ends kept."""
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    count = max(2, int(round(along[-1] / step_px)) + 1)
+    count = max(2, round(along[-1] / step_px) + 1)
     at = np.linspace(0.0, along[-1], count)
     return np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
 

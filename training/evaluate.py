@@ -1,8 +1,8 @@
 """How good a network is: `python -m training.evaluate --data FILES [--model ONNX|CHECKPOINT] [--limit N] [--json]`.
 
-On the reference rendering (training/render.py). Pooled IoU over the three classes and their mean, the per-image mean beside
-it, corners found (a component of the corners channel whose centroid lies within 2 px of a true corner), and the mean IoU of
-each category. The default model is the one that is shipped. An ONNX file needs no PyTorch.
+On the reference rendering (training/render.py). Pooled IoU over the three classes and their mean, the per-image mean
+beside it, corners found (a component of the corners channel whose centroid lies within 2 px of a true corner), and the
+mean IoU of each category. The default model is the one that is shipped. An ONNX file needs no PyTorch.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """What the network is taught by: cross-entropy weighted by class frequency (XENT) or by max weights (MWX).
 
-Raghav et al. 2020, Sec. 3.2. Labels are ordered background < lines < corners, so that a pixel falsely painted as a corner
-weighs as much as a corner missed: w(x) = omega(max(label(x), predicted(x))). Eq. 1 lacks its minus sign; ours has it.
-The paper does not state omega beyond "inversely proportional to class frequencies"; ours has an exponent (1 = inverse).
+Raghav et al. 2020, Sec. 3.2. Labels are ordered background < lines < corners, so that a pixel falsely painted as a
+corner weighs as much as a corner missed: w(x) = omega(max(label(x), predicted(x))). Eq. 1 lacks its minus sign; ours
+has it. The paper does not state omega beyond "inversely proportional to class frequencies"; ours has an exponent
+(1 = inverse).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Muon: momentum whose update is made orthogonal before it is applied (Jordan et al. 2024), for convolution kernels.
 
-PyTorch's own Muon takes matrices only; here a kernel counts as the matrix (first axis) x (all others). Everything that is
-no kernel (scales, biases) is taken by AdamW inside the same optimiser.
+PyTorch's own Muon takes matrices only; here a kernel counts as the matrix (first axis) x (all others). Everything that
+is no kernel (scales, biases) is taken by AdamW inside the same optimiser.
 """
 
 from __future__ import annotations

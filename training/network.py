@@ -8,6 +8,7 @@ convolution is ours (it folds away at export).
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -92,7 +93,7 @@ class MirrorUNet(nn.Module):
         self.first = blocks(conv, [1] + [c[0]] * r, [shape.k1] + [k2] * (r - 1), norm)
         self.down, self.levels = nn.ModuleList(), nn.ModuleList()
         self.up, self.mirrors = nn.ModuleList(), nn.ModuleList()
-        for above, below in zip(c[:-1], c[1:], strict=True):
+        for above, below in itertools.pairwise(c):
             self.down.append(nn.Sequential(*unit(conv(above, below, k2, stride=STRIDE, bias=not norm), below, norm)))
             self.levels.append(blocks(conv, [below] * (r + 1), [k2] * r, norm))
             self.up.append(nn.Sequential(*unit(up(below, above, k2, stride=STRIDE, bias=not norm), above, norm)))

@@ -7,6 +7,7 @@ Sketches are kept packed (int16 or float32 points, one array) so that 70,000 of 
 from __future__ import annotations
 
 import gzip
+import itertools
 import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -36,7 +37,7 @@ class Sketches:
     def __getitem__(self, index: int) -> Strokes:
         first, last = self.sketch_starts[index], self.sketch_starts[index + 1]
         bounds = self.stroke_starts[first : last + 1]
-        return [self.points[a:b] for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+        return [self.points[a:b] for a, b in itertools.pairwise(bounds)]
 
     def sampling_weights(self, power: float = 0.5) -> NDArray[np.float64]:
         """Probability of each sketch so that a category of n sketches is drawn in proportion to n ** power."""

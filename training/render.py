@@ -2,7 +2,7 @@
 
 `reference` is the rendering on which every IoU of this project is stated (model card): canvas 221 px, the sketch's
 longest side 188 px, its box centred; vertices rounded to pixels; lines 2 px wide, antialiased; corners = discs of 13 px
-on every distinct vertex and every crossing (Raghav et al. 2020, Sec. 5.1: corners are stroke points plus intersections).
+on every distinct vertex and every crossing (Raghav et al. 2020, Sec. 5.1: stroke points plus intersections).
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def crossings(strokes: Sequence[Points]) -> Points:
         u = (offset[:, 0] * r[:, 1] - offset[:, 1] * r[:, 0]) / cross
     tiny = 1e-9
     meet = (cross != 0) & (t >= -tiny) & (t <= 1 + tiny) & (u >= -tiny) & (u <= 1 + tiny)
-    # Parallel segments that overlap do so from an end of one of them, and every end is a vertex, hence a corner, already.
+    # Parallel segments that overlap do so from an end of one of them, which is a vertex, hence a corner, already.
     return p[meet] + t[meet, None] * r[meet]
 
 

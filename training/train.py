@@ -1,8 +1,9 @@
 """Train a network: `python -m training.train --data DIR --net 7,3,4,3 --loss mwx --out runs/NAME [--resume]`.
 
-The budget is seconds or images. The learning rate warms up, stays, and falls to nothing over the last part (so that a run
-can go on from before the fall); the weights that are kept are an exponential moving average. A checkpoint is written every
-few minutes and on SIGTERM or Ctrl-C; --resume goes on in the same order of canvases with the same state of the optimiser.
+The budget is seconds or images. The learning rate warms up, stays, and falls to nothing over the last part (so that a
+run can go on from before the fall); the weights that are kept are an exponential moving average. A checkpoint is
+written every few minutes and on SIGTERM or Ctrl-C; --resume goes on in the same order of canvases with the same state
+of the optimiser.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import json
 import signal
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,7 @@ class Config:
 
     data: str
     raw: str | None = None
-    shape: Shape = Shape()
+    shape: Shape = field(default_factory=Shape)
     loss: str = "mwx"
     omega_exponent: float = 0.5
     plain_share: float = 0.15
@@ -275,10 +276,10 @@ def parse(arguments: Sequence[str] | None = None) -> tuple[Config, Path, bool, f
     parser.add_argument("--resume", action="store_true", help="go on from the folder's checkpoint")
     parser.add_argument("--save-every-s", type=float, default=240.0)
     parser.add_argument("--no-bf16", action="store_true")
-    for field in fields(Config):
-        if field.name not in ("data", "raw", "shape", "bf16"):
-            kind: Any = _kind(field.default)
-            parser.add_argument(f"--{field.name.replace('_', '-')}", type=kind, default=field.default)
+    for option in fields(Config):
+        if option.name not in ("data", "raw", "shape", "bf16"):
+            kind: Any = _kind(option.default)
+            parser.add_argument(f"--{option.name.replace('_', '-')}", type=kind, default=option.default)
     given = vars(parser.parse_args(arguments))
     tuples = {key: tuple(int(v) for v in given.pop(key).split(",")) for key in ("net", "channels")}
     shape = Shape(*tuples["net"], tuples["channels"], not given.pop("no_batch_norm"))

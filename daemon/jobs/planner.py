@@ -127,7 +127,7 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
 
 
 def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
-    """The box's lower left corner in machine mm: where the pen stands is the sheet's corner, or the machine knows it."""
+    """The box's lower left corner in machine mm. The sheet's corner is where the pen stands or, homed, at origin_mm."""
     corner_mm = machine.origin_mm if machine.origin == "homed" else (0.0, 0.0)
     return sheet.box_origin_mm[0] + corner_mm[0], sheet.box_origin_mm[1] + corner_mm[1]
 
@@ -146,7 +146,7 @@ def _toolpath(drawing: Drawing, sheet: Sheet, machine: Machine) -> Toolpath:
 
 def _program(toolpath: Toolpath, machine: Machine) -> Program:
     if machine.dialect == "paper":
-        return write_paper(toolpath, draw_mm_s=machine.draw_mm_s)
+        return write_paper(toolpath, units=machine.units, draw_mm_s=machine.draw_mm_s)
     return write_gcode(toolpath, pen=pen_of(machine), draw_mm_s=machine.draw_mm_s)
 
 

@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Literal
 
 from daemon.machine.link import Link
-from daemon.machine.ports import find_grbl
-from daemon.machine.serial_port import adapters, open_serial
+from daemon.machine.serial_port import open_serial
 from daemon.machine.simulated import SimulatedTransport, open_simulated, simulator_of
 from daemon.machine.transport import Transport
 from daemon.shapes import Program
@@ -89,7 +88,7 @@ def open_machine(
 ) -> OpenedMachine:
     """Open the port and prepare the conversation; nothing has been said yet.
 
-    url: auto (the one GRBL controller on the USB), serial://, tcp:// or sim://. lift: lines that raise the pen.
+    url: serial://, tcp:// or sim://. lift: lines that raise the pen.
     touches: when the pen of a simulated machine is on the sheet. heard: is told every event, in the drawing thread.
     Raises NoMachine, and SettingsError as `check_url` does.
     """
@@ -107,4 +106,4 @@ def check_url(url: str) -> None:
 def _transport(url: str, baud: int, touches: PenRule) -> Transport:
     if url.startswith("sim://"):
         return open_simulated(url, pen=touches)
-    return open_serial(find_grbl(adapters()) if url == "auto" else url, baud=baud)
+    return open_serial(url, baud=baud)

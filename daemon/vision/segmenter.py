@@ -20,7 +20,7 @@ from daemon.vision.tiles import Tile, tiles
 
 # onnxruntime's Linux wheels write an identifier to disk and mean to report home as soon as they are imported.
 os.environ["ORT_DISABLE_TELEMETRY"] = "1"
-import onnxruntime  # noqa: E402
+import onnxruntime
 
 MODELS = Path(__file__).parent.parent / "models"
 MARGIN_PX = 16

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 
@@ -28,7 +29,7 @@ def spans(length_px: int, size_px: int, margin_px: int) -> list[tuple[int, int, 
     core_px = size_px - 2 * margin_px
     count = -(-length_px // core_px)
     bounds = [round(k * length_px / count) for k in range(count + 1)]
-    return [((a + b - size_px) // 2, a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    return [((a + b - size_px) // 2, a, b) for a, b in itertools.pairwise(bounds)]
 
 
 def tiles(width_px: int, height_px: int, *, size_px: int, margin_px: int) -> list[Tile]:

@@ -3,9 +3,9 @@
 import math
 
 import pytest
+import torch
 
-torch = pytest.importorskip("torch")
-from training.loss import mwx, omega, xent  # noqa: E402
+from training.loss import mwx, omega, xent
 
 pytestmark = pytest.mark.training
 

@@ -1,9 +1,9 @@
 """Net(k1, k2, d, r): sizes, and the promise that output and input have one size."""
 
 import pytest
+import torch
 
-torch = pytest.importorskip("torch")
-from training.network import MirrorUNet, Shape, legal_size_px, level_sizes, receptive_field_px  # noqa: E402
+from training.network import MirrorUNet, Shape, legal_size_px, level_sizes, receptive_field_px
 
 pytestmark = pytest.mark.training
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 
-torch = pytest.importorskip("torch")
 os.environ["ORT_DISABLE_TELEMETRY"] = "1"
-import onnxruntime  # noqa: E402
+import onnxruntime
 
-from training import export, train  # noqa: E402
-from training.network import MirrorUNet, Shape  # noqa: E402
+from training import export, train
+from training.network import MirrorUNet, Shape
 
 pytestmark = [pytest.mark.training, pytest.mark.filterwarnings("ignore")]
 
