@@ -12,6 +12,7 @@ os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 import onnxruntime
 
 from training import export, train
+from training.canvas import stack
 from training.network import MirrorUNet, Shape
 
 pytestmark = [pytest.mark.training, pytest.mark.filterwarnings("ignore")]
@@ -92,7 +93,7 @@ def test_the_int8_file_agrees_with_the_float_network(data: Path, tmp_path: Path)
     manifest = json.loads(model.with_suffix(".json").read_text())
     assert manifest["labels"] == ["background", "lines", "corners"]
     ink = train.validation_sets(train.parse(["--data", str(data), "--out", "x", "--validation", "8"])[0])["paper"]
-    batch = train.stack(ink).ink
+    batch = stack(ink).ink
     (said,) = onnxruntime.InferenceSession(str(model)).run(None, {"ink": batch})
     with torch.inference_mode():
         expected = export.load(checkpoint)(torch.from_numpy(batch)).numpy()
