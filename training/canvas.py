@@ -36,8 +36,9 @@ class Batch:
 class Canvases:
     """Canvas `index` of the run `seed`: the same whenever, and in whatever order, it is asked for."""
 
-    def __init__(self, simplified: Sketches, raw: Sketches | None, *, seed: int) -> None:
-        self._seed = seed
+    def __init__(self, simplified: Sketches, raw: Sketches | None, *, seed: int, worn: float = 0.5) -> None:
+        """worn: share of the curved canvases that look like a scan."""
+        self._seed, self._worn = seed, worn
         self._sources = [simplified, raw or simplified]
         self._cumulated = [np.cumsum(source.sampling_weights()) for source in self._sources]
 
@@ -65,7 +66,8 @@ class Canvases:
         shift = random.uniform(-slack_px, slack_px, 2)
         placed = [t + shift for t in fit(strokes, canvas_px, sketch_px)]
         sample = curves(placed, canvas_px, int(random.choice([1, 2, 3, 4], p=[0.15, 0.4, 0.35, 0.1])))
-        return Sample(appearance(sample.ink, random), sample.label)
+        worn = random.random() < self._worn
+        return Sample(appearance(sample.ink, random), sample.label) if worn else sample
 
     def _sketches(self, source: int, random: Random) -> list[list[Points]]:
         """One, two or three sketches turned, mirrored and stretched, each in a unit box moved and scaled at random."""
@@ -90,9 +92,7 @@ class Canvases:
 
 
 def appearance(ink: NDArray[np.uint8], random: Random) -> NDArray[np.uint8]:
-    """Half of the pages stay as they are; the others are blurred, paler or grainy as a scan is."""
-    if random.random() < 0.5:
-        return ink
+    """Blurred, paler or grainy, as a scan is."""
     page = ink.astype(np.float32)
     if random.random() < 0.7:
         page = cv2.GaussianBlur(page, (0, 0), random.uniform(0.3, 0.8))

@@ -20,11 +20,13 @@ from numpy.typing import NDArray
 
 from daemon.vision.segmenter import MODELS, load_manifest, open_model
 from training import quickdraw
+from training.canvas import Canvases
 from training.measure import CLASSES, Confusion
 from training.render import CORNERS, Sample, reference
 
 Label = NDArray[np.uint8]
 FOUND_WITHIN_PX = 2.0
+CURVED_SEED = 20
 _BATCH = 8
 
 
@@ -124,20 +126,45 @@ def reference_pages(files: Sequence[Path], limit: int | None) -> Iterator[tuple[
     return ((word, reference(sketches[k])) for k, word in enumerate(sketches.words))
 
 
+def curved_pages(files: Sequence[Path], limit: int | None, *, worn: float) -> Iterator[tuple[str, Sample]]:
+    """Smooth curves 1 to 4 px wide (training/canvas.py), as many as there are rows."""
+    raw = quickdraw.read(files, limit=limit)
+    canvases = Canvases(raw, raw, seed=CURVED_SEED, worn=worn)
+    return ((word, canvases.sample(k, curved=1.0)) for k, word in enumerate(raw.words))
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--model", type=Path, help="an .onnx file or a checkpoint; default: the shipped network")
     parser.add_argument("--data", type=Path, nargs="+", required=True, help="Quick, Draw! ndjson, simplified form")
+    parser.add_argument("--raw", type=Path, nargs="+", help="raw form: curved pages are measured too, clean and worn")
     parser.add_argument("--limit", type=int, help="only the first N rows")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--json", action="store_true", help="only one line of JSON on stdout")
+    parser.add_argument("--manifest", action="store_true", help="keep the figures in the manifest beside the model")
     given = parser.parse_args(arguments)
     model = given.model or MODELS / load_manifest().file
-    score = evaluate(labeller(model, threads=given.threads), reference_pages(given.data, given.limit))
+    label_of = labeller(model, threads=given.threads)
+    score = evaluate(label_of, reference_pages(given.data, given.limit))
     if not given.json:
         print_table(score)
-    print(json.dumps(score.summary()))
+    summary = score.summary()
+    for name, worn in (("curved", 0.0), ("worn", 1.0)) if given.raw else ():
+        summary[name] = evaluate(label_of, curved_pages(given.raw, given.limit, worn=worn)).summary()
+    if given.manifest:
+        keep_figures(model.with_suffix(".json"), summary, given)
+    print(json.dumps(summary))
     return 0
+
+
+def keep_figures(manifest: Path, summary: dict[str, object], given: argparse.Namespace) -> None:
+    """Write the summary into the manifest, with the command that gives it again."""
+    options = [("--data", given.data), ("--raw", given.raw or ())]
+    words = [word for option, files in options if files for word in (option, *(file.name for file in files))]
+    words += ["--limit", str(given.limit)] if given.limit else []
+    values = json.loads(manifest.read_text())
+    values["figures"] = {"command": " ".join(["python -m training.evaluate", *words]), **summary}
+    manifest.write_text(json.dumps(values, indent=1) + "\n")
 
 
 def print_table(score: Score) -> None:
