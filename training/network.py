@@ -8,12 +8,13 @@ convolution is ours (it folds away at export).
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
 CLASSES = ("background", "lines", "corners")
 STRIDE = 2
@@ -29,17 +30,26 @@ class Shape:
     r: int = 3
     channels: tuple[int, ...] = (8, 16, 32, 64, 128)
     batch_norm: bool = True
+    vanilla: bool = False
 
     def __post_init__(self) -> None:
         if len(self.channels) != self.d + 1:
             raise ValueError(f"{self.d} levels below the first need {self.d + 1} channel widths, not {self.channels}")
 
 
+def build_net(shape: Shape) -> nn.Module:
+    """The network of a shape, untrained."""
+    return VanillaUNet(shape) if shape.vanilla else MirrorUNet(shape)
+
+
 def level_sizes(shape: Shape, size_px: int) -> list[int] | None:
     """Side of the maps at each level for a square input of side `size_px`; None where the sizes do not work out.
 
-    They do if and only if every (n - k2) is even and every level is left with at least one pixel.
+    They do if and only if every (n - k2) is even and every level is left with at least one pixel; a vanilla net takes
+    what its poolings divide evenly.
     """
+    if shape.vanilla:
+        return None if size_px % STRIDE**shape.d else [size_px // STRIDE**level for level in range(shape.d + 1)]
     sizes = [size_px - (shape.k1 - 1) - (shape.r - 1) * (shape.k2 - 1)]
     for _ in range(shape.d):
         if (sizes[-1] - shape.k2) % STRIDE:
@@ -93,7 +103,7 @@ class MirrorUNet(nn.Module):
         self.first = blocks(conv, [1] + [c[0]] * r, [shape.k1] + [k2] * (r - 1), norm)
         self.down, self.levels = nn.ModuleList(), nn.ModuleList()
         self.up, self.mirrors = nn.ModuleList(), nn.ModuleList()
-        for above, below in itertools.pairwise(c):
+        for above, below in pairwise(c):
             self.down.append(nn.Sequential(*unit(conv(above, below, k2, stride=STRIDE, bias=not norm), below, norm)))
             self.levels.append(blocks(conv, [below] * (r + 1), [k2] * r, norm))
             self.up.append(nn.Sequential(*unit(up(below, above, k2, stride=STRIDE, bias=not norm), above, norm)))
@@ -115,3 +125,41 @@ class MirrorUNet(nn.Module):
             x = torch.cat([skips.pop(), x], dim=1)
         logits: Tensor = self.logits(self.last(x))
         return logits
+
+
+class VanillaUNet(nn.Module):
+    """The U-Net of Ronneberger et al. 2015 as the paper compares it, its (3 3 4 2): float32 in and out as MirrorUNet.
+
+    Padded convolutions, 2 x 2 max pooling, 2 x 2 up-convolutions. Sides must be multiples of 2 ** d.
+    """
+
+    def __init__(self, shape: Shape) -> None:
+        super().__init__()
+        self.shape = shape
+        c, norm = shape.channels, shape.batch_norm
+        self.levels, self.up, self.mirrors = nn.ModuleList(), nn.ModuleList(), nn.ModuleList()
+        for level, (before, width) in enumerate(pairwise((1, *c))):
+            kernels = [shape.k1 if level == 0 else shape.k2, *[shape.k2] * (shape.r - 1)]
+            self.levels.append(blocks(Padded, [before] + [width] * shape.r, kernels, norm))
+        for above, below in pairwise(c):
+            self.up.append(nn.ConvTranspose2d(below, above, STRIDE, stride=STRIDE))
+            self.mirrors.append(blocks(Padded, [2 * above] + [above] * shape.r, [shape.k2] * shape.r, norm))
+        self.logits = nn.Conv2d(c[0], len(CLASSES), 1)
+
+    def forward(self, x: Tensor) -> Tensor:
+        skips = []
+        for level in self.levels:
+            x = level(functional.max_pool2d(x, STRIDE) if skips else x)
+            skips.append(x)
+        x = skips.pop()
+        for up, mirror in zip(reversed(self.up), reversed(self.mirrors), strict=True):
+            x = mirror(torch.cat([skips.pop(), up(x)], dim=1))
+        logits: Tensor = self.logits(x)
+        return logits
+
+
+class Padded(nn.Conv2d):
+    """A convolution whose output has the size of its input."""
+
+    def __init__(self, before: int, after: int, kernel: int, *, bias: bool = True) -> None:
+        super().__init__(before, after, kernel, padding=kernel // 2, bias=bias)

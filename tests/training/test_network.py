@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from training.network import MirrorUNet, Shape, legal_size_px, level_sizes, receptive_field_px
+from training.network import MirrorUNet, Shape, build_net, legal_size_px, level_sizes, receptive_field_px
 
 pytestmark = pytest.mark.training
 
@@ -64,3 +64,9 @@ def test_an_output_pixel_sees_exactly_its_receptive_field(net: str) -> None:
 def test_channels_must_fit_the_depth() -> None:
     with pytest.raises(ValueError, match="5 channel widths"):
         Shape(7, 3, 4, 3, (8, 16))
+
+
+def test_the_vanilla_net_keeps_sizes_too() -> None:
+    shape = Shape(3, 3, 2, 2, (2, 3, 4), vanilla=True)
+    assert legal_size_px(shape, 221) == 224
+    assert build_net(shape).eval()(torch.zeros(1, 1, 28, 28)).shape == (1, 3, 28, 28)
