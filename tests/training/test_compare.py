@@ -21,7 +21,20 @@ def test_every_network_of_the_table_is_trained_and_printed(
     data.write_text("\n".join(map(json.dumps, rows)))
     monkeypatch.setattr(compare, "RESULTS", tmp_path / "results.json")
     monkeypatch.setattr(compare, "TABLE", compare.TABLE[3:])
-    options = ["--data", str(data), "--test", str(data), "--limit", "4", "--images", "8", "--out", str(tmp_path / "r")]
+    options = [
+        "--data",
+        str(data),
+        "--test",
+        str(data),
+        "--limit",
+        "4",
+        "--images",
+        "8",
+        "--validation",
+        "4",
+        "--out",
+        str(tmp_path / "r"),
+    ]
     assert compare.main(["--run", *options]) == 0
     results = json.loads((tmp_path / "results.json").read_text())
     assert set(results) == {compare.key_of(entry, norm) for entry in compare.TABLE for norm in (False, True)}
