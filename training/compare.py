@@ -1,9 +1,9 @@
 """The paper's table of five networks, trained under one budget: `python -m training.compare [--run ...]`.
 
 Without --run it prints the table of docs/compare/results.json beside the paper's own figures and draws the curves of
-validation IoU and loss. With --run it trains what that file does not hold yet, one network after the other, as the paper
-does it: RMSProp 0.9, no normalisation, each sketch drawn once at 188 px and padded with white to the network's next legal size;
-and all of it again with BatchNorm. Test figures: pooled mean IoU over three classes of the reference rendering.
+validation IoU and loss. With --run it trains what that file does not hold yet, one network after the other, as the
+paper does it: RMSProp 0.9, no normalisation, each sketch drawn once at 188 px and padded with white to the network's
+next legal size; and all of it again with BatchNorm. Test figures: pooled mean IoU of the reference rendering.
 """
 
 from __future__ import annotations
