@@ -121,7 +121,9 @@ def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> Lin
     polylines, ends = joined(polylines, ends, nodes.vertices)
     polylines, vertices = onto_ridge(polylines, ends, nodes.vertices, ink.shades, width_px=width_px)
     response = segmentation.lines + segmentation.corners
-    scores = [float(values_at(response, polyline).mean()) for polyline in polylines]
+    lengths = np.array([len(polyline) for polyline in polylines])
+    values = values_at(response, np.concatenate(polylines))
+    scores = (np.add.reduceat(values, np.cumsum(lengths) - lengths) / lengths).tolist()
     edges = zip(ends.tolist(), polylines, scores, strict=True)
     return _used(vertices, [Edge(p, q, _simplified(polyline), score) for (p, q), polyline, score in edges])
 

@@ -63,6 +63,8 @@ def _cut(walk: list[int], polylines: list[Points], ends: Indices) -> list[tuple[
     """The polyline of a walk, cut at the vertices where it turns, with the vertices of each piece."""
     parts = [polylines[half >> 1][:: -1 if half & 1 else 1] for half in walk]
     stops = [int(ends[half >> 1, half & 1]) for half in walk] + [int(ends[walk[-1] >> 1, 1 - (walk[-1] & 1)])]
+    if len(walk) == 1:
+        return [(parts[0], stops[0], stops[1])]
     line = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
     rows = np.cumsum([0, *(len(part) - 1 for part in parts)])
     lengths = np.array([np.hypot(*np.diff(part, axis=0).T).sum() for part in parts])

@@ -20,6 +20,8 @@ _FIT_FROM_PX, _FIT_TO_PX = 1.5, 6.0
 _PASSES = 4
 _STRAIGHT_PX = 0.05
 _MOVE_PX, _JUNCTION_MOVE_PX = 1.5, 2.5
+_ROWS = 1 << 14
+"""Points whose profiles are looked at together: few enough to stay in the cache; OpenCV allows 32,767."""
 _HOLD = 0.05
 """Weight with which a vertex holds its place against the lines that meet in it."""
 
@@ -88,21 +90,29 @@ def _blurred(values: Floats, bundle: _Bundle) -> Floats:
 def _offsets(bundle: _Bundle, ink: Map, width_px: float) -> tuple[Floats, NDArray[np.bool_], Points]:
     """How far the middle of the ink lies to the side of each point, whether the profile is one line's, the normals."""
     normals = _normals(bundle)
-    reach = width_px / 2 + 2.0
-    across = np.arange(-reach, reach + _STEP_PX / 2, _STEP_PX)
-    where = bundle.points[:, None, :] + across[:, None] * normals[:, None, :]
-    profiles = _sampled(ink, where)
-    inked = profiles > _INKED
-    centre = np.abs(np.where(inked, across, np.inf)).argmin(axis=1)
-    run = _run_around(inked, centre)
-    weights = np.where(run, profiles, 0.0)
-    total = weights.sum(axis=1)
-    offsets = (weights * across).sum(axis=1) / np.maximum(total, 1e-9)
-    widths = run.sum(axis=1) * _STEP_PX
+    rows = range(0, len(normals), _ROWS)
+    parts = [_profiles(bundle.points[r : r + _ROWS], normals[r : r + _ROWS], ink, width_px) for r in rows]
+    offsets, widths, closed = (np.concatenate(some) for some in zip(*parts, strict=True))
     usual = np.maximum(_medians(widths, bundle), _STEP_PX)
-    open_ended = run[:, 0] | run[:, -1]
-    valid = (total > 0) & ~open_ended & (widths <= usual + 0.75) & (np.abs(offsets) <= width_px / 2 + 1.0)
-    return offsets, valid, normals
+    valid = closed & (widths <= usual + 0.75) & (np.abs(offsets) <= width_px / 2 + 1.0)
+    return offsets.astype(np.float64), valid, normals
+
+
+def _profiles(
+    points: Points, normals: Points, ink: Map, width_px: float
+) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
+    """The ink across each point: how far its middle lies aside, how wide it is, whether paper bounds it."""
+    reach = width_px / 2 + 2.0
+    across = np.arange(-reach, reach + _STEP_PX / 2, _STEP_PX, dtype=np.float32)
+    x, y = (points[:, None, k].astype(np.float32) + across * normals[:, None, k].astype(np.float32) for k in (0, 1))
+    profiles = np.asarray(cv2.remap(ink, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT), np.float32)
+    inked = profiles > _INKED
+    centre = np.abs(np.where(inked, across, np.float32(np.inf))).argmin(axis=1)
+    run = _run_around(inked, centre)
+    weights = np.where(run, profiles, np.float32(0.0))
+    total = weights.sum(axis=1)
+    offsets = weights @ across / np.maximum(total, np.float32(1e-9))
+    return offsets, run.sum(axis=1, dtype=np.float32) * np.float32(_STEP_PX), (total > 0) & ~run[:, 0] & ~run[:, -1]
 
 
 def _normals(bundle: _Bundle) -> Points:
@@ -115,16 +125,6 @@ def _normals(bundle: _Bundle) -> Points:
     return np.stack([-unit[:, 1], unit[:, 0]], axis=1)
 
 
-def _sampled(ink: Map, where: NDArray[np.float64]) -> Floats:
-    """Bilinear values of a map at points (S, K, 2), 0 outside it."""
-    rows = 30_000
-    parts = [
-        cv2.remap(ink, part[..., 0], part[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
-        for part in (where[top : top + rows].astype(np.float32) for top in range(0, len(where), rows))
-    ]
-    return np.asarray(np.concatenate(parts), np.float64)
-
-
 def _run_around(inked: NDArray[np.bool_], centre: Indices) -> NDArray[np.bool_]:
     """The stretch of True around `centre` in each row."""
     columns = np.arange(inked.shape[1])
@@ -133,11 +133,11 @@ def _run_around(inked: NDArray[np.bool_], centre: Indices) -> NDArray[np.bool_]:
     return np.asarray((columns > bare_left[:, None]) & (columns < bare_right[:, None]))
 
 
-def _medians(values: Floats, bundle: _Bundle) -> Floats:
+def _medians(values: NDArray[np.float32], bundle: _Bundle) -> Floats:
     """For each point the lower quartile of the values on its edge."""
     order = np.lexsort((values, bundle.edge))
     quartile = bundle.first + (bundle.last - bundle.first) // 4
-    return np.asarray(values[order][quartile][bundle.edge])
+    return np.asarray(values[order][quartile][bundle.edge], np.float64)
 
 
 def _spread(offsets: Floats, valid: NDArray[np.bool_], bundle: _Bundle) -> Floats:

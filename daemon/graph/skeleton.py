@@ -85,16 +85,22 @@ def chains(skeleton: Skeleton, owners: Indices) -> list[Chain]:
     unowned pixels is returned once, pairs of vertices whose pixels touch once. Rings without a vertex are not
     returned: see `rings`.
     """
-    visited = owners >= 0
-    links = [[link for link in row if link >= 0] for row in skeleton.links.tolist()]
-    own, found, touching = owners.tolist(), [], set()
-    for pixel in np.flatnonzero(visited).tolist():
-        for link in links[pixel]:
-            if own[link] >= 0:
+    owned = np.flatnonzero(owners >= 0)
+    links, own = skeleton.links[owned], owners.tolist()
+    # Pixels between vertices have two links: the last two of a sorted row.
+    onward = np.sort(skeleton.links, axis=1)[:, -2:]
+    one, other = onward[:, 0].tolist(), onward[:, 1].tolist()
+    walked: set[int] = set()
+    found, touching = [], set()
+    for pixel, row in zip(owned.tolist(), links.tolist(), strict=True):
+        for link in row:
+            if link >= 0 and own[link] >= 0:
                 if own[pixel] < own[link]:
                     touching.add((own[pixel], own[link]))
-            elif not visited[link]:
-                found.append(_walk(own[pixel], pixel, link, links, own, visited))
+            elif link >= 0 and link not in walked:
+                chain = _walk(pixel, link, one, other, own)
+                walked.update((link, chain.path[-1]))
+                found.append(chain)
     return found + [Chain(start, end, []) for start, end in sorted(touching)]
 
 
@@ -116,18 +122,12 @@ def chain_points(skeleton: Skeleton, chain: Chain, vertices: Points) -> Points:
     return np.concatenate([vertices[[chain.start]], path, vertices[[chain.end]]])
 
 
-def _walk(
-    start: int, came: int, pixel: int, links: list[list[int]], own: list[int], visited: NDArray[np.bool_]
-) -> Chain:
-    """Follow unowned pixels from an owned one until an owned one; a dead end returns to where it came from."""
-    path = []
+def _walk(came: int, pixel: int, one: list[int], other: list[int], own: list[int]) -> Chain:
+    """Follow unowned pixels, each with its two links, from an owned pixel until the next owned one."""
+    start, path = own[came], []
     while own[pixel] < 0:
-        visited[pixel] = True
         path.append(pixel)
-        onward = [link for link in links[pixel] if link != came and (own[link] >= 0 or not visited[link])]
-        if not onward:
-            return Chain(start, start, path)
-        came, pixel = pixel, onward[0]
+        came, pixel = pixel, other[pixel] if one[pixel] == came else one[pixel]
     return Chain(start, own[pixel], path)
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.graph.anchors import Anchored, nearest
+from daemon.graph.anchors import Anchored, Nearest, nearest
 from daemon.graph.feedback import Adaptation, select
 from daemon.graph.plausibility import Floats, pairs_on_ink, plausibilities
-from daemon.graph.repairs import TRIM_PX, filled, redundant, suppressed, without_gap
+from daemon.graph.repairs import TRIM_PX, clear_of_corners, filled, redundant, suppressed, without_gap
 from daemon.graph.skeleton import Chain, Indices, Skeleton
 from daemon.ink import Mask
 from daemon.shapes import Points, Segmentation
@@ -53,14 +53,14 @@ def straight_edges(
     other edges cover it.
     """
     vertices = anchored.vertices[: anchored.corners]
-    pairs, bends = _candidates(anchored, skeleton, chains, ink)
+    near = nearest(vertices, (ink.shape[0], ink.shape[1]))
+    pairs, bends = _candidates(anchored, skeleton, chains, ink, near)
     sound = _sound(vertices, pairs, bends, ink, width_px)
     looked_at = sound | (bends >= 0)
     pairs, bends, sound = pairs[looked_at], bends[looked_at], sound[looked_at]
     response = segmentation.lines + segmentation.corners
     eta = plausibilities(response, *_ends(vertices, pairs), width_px=BETA_PX, trim_px=TRIM_PX)
     sound &= eta > adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds
-    near = nearest(vertices, (ink.shape[0], ink.shape[1]))
     allowed = sound & ~suppressed(vertices, pairs, pairs[(eta > adaptation.tau0) | (bends >= 0)], near)
     pairs, bends, eta = pairs[allowed], bends[allowed], eta[allowed]
     chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px)
@@ -79,35 +79,42 @@ def _sound(vertices: Points, pairs: Indices, bends: Floats, ink: Mask, width_px:
     return sound
 
 
-def bend_px(skeleton: Skeleton, chain: Chain, vertices: Points) -> float:
-    """How far a chain leaves the straight line between its vertices, in px, away from the vertices' discs."""
-    if chain.start == chain.end:
-        return np.inf
-    p, q = vertices[chain.start], vertices[chain.end]
-    length = float(np.hypot(*(q - p)))
-    if not chain.path or length == 0:
-        return 0.0
-    x, y = (skeleton.pixels[chain.path] - p).T
-    across = np.abs(x * (q - p)[1] - y * (q - p)[0]) / length
-    return float(across.max())
+def bends_px(skeleton: Skeleton, chains: list[Chain], vertices: Points) -> Floats:
+    """How far each chain leaves the straight line between its vertices, in px; a loop leaves it without bound."""
+    ends = np.array([(chain.start, chain.end) for chain in chains], np.intp).reshape(-1, 2)
+    lengths = np.array([len(chain.path) for chain in chains], np.intp)
+    bends = np.where(ends[:, 0] == ends[:, 1], np.inf, 0.0)
+    long = np.flatnonzero((lengths > 0) & (bends == 0))
+    if not long.size:
+        return bends
+    pixels = skeleton.pixels[np.concatenate([chains[index].path for index in long])]
+    of = np.repeat(long, lengths[long])
+    p, q = vertices[ends[of, 0]], vertices[ends[of, 1]]
+    (x, y), (across, down) = (pixels - p).T, (q - p).T
+    away = np.abs(x * down - y * across) / np.maximum(np.hypot(across, down), 1e-9)
+    bends[long] = np.maximum.reduceat(away, np.cumsum(lengths[long]) - lengths[long])
+    return bends
 
 
-def _candidates(anchored: Anchored, skeleton: Skeleton, chains: list[Chain], ink: Mask) -> tuple[Indices, Floats]:
+def _candidates(
+    anchored: Anchored, skeleton: Skeleton, chains: list[Chain], ink: Mask, near: Nearest
+) -> tuple[Indices, Floats]:
     """Pairs of corners (P, 2), lower first, that few chains join, and the least bend of a chain that joins them.
 
     The bend is -1 where no chain joins the two.
     """
     bends: dict[tuple[int, int], float] = {}
     neighbours: list[set[int]] = [set() for _ in anchored.vertices]
-    for chain in chains:
+    for chain, bend in zip(chains, bends_px(skeleton, chains, anchored.vertices).tolist(), strict=True):
         if chain.start != chain.end:
             pair = (min(chain.start, chain.end), max(chain.start, chain.end))
-            bends[pair] = min(bends.get(pair, np.inf), bend_px(skeleton, chain, anchored.vertices))
+            bends[pair] = min(bends.get(pair, np.inf), bend)
             neighbours[chain.start].add(chain.end)
             neighbours[chain.end].add(chain.start)
     corners = anchored.corners
     linked = [(p, q) for p in range(corners) for q in _within(p, neighbours) if p < q < corners]
     near_by = pairs_on_ink(anchored.vertices[:corners], ink, within_px=_reach_px(corners, ink))
+    near_by = near_by[clear_of_corners(anchored.vertices, near_by, near)]
     pairs = np.unique(np.concatenate([np.array(linked, np.intp).reshape(-1, 2), near_by]), axis=0)
     return pairs, np.array([bends.get((p, q), -1.0) for p, q in pairs.tolist()])
 

@@ -8,7 +8,7 @@ import pytest
 
 from daemon.graph.anchors import nearest
 from daemon.graph.bends import sharpened
-from daemon.graph.repairs import filled, redundant, suppressed, without_gap
+from daemon.graph.repairs import clear_of_corners, filled, redundant, suppressed, without_gap
 
 
 def points(*values: tuple[float, float]) -> np.ndarray:
@@ -41,6 +41,25 @@ def test_an_edge_does_not_pass_by_a_corner(between: tuple[float, float], known: 
     near = nearest(corners, (20, 60))
     pairs, joined = np.array([[0, 2]]), np.array(known, np.intp).reshape(-1, 2)
     assert suppressed(corners, pairs, joined, near).tolist() == [refused]
+
+
+def test_what_the_quick_look_refuses_suppression_refuses_too() -> None:
+    corners = np.random.default_rng(1).uniform(0, 99, (60, 2))
+    near, pairs = nearest(corners, (100, 100)), np.argwhere(np.triu(np.ones((60, 60), bool), 1))
+    none_known = np.empty((0, 2), np.intp)
+    refused = ~clear_of_corners(corners, pairs, near)
+    assert refused.sum() > 100
+    # Both look up the nearest corner of whole pixels, at different places: a pair that grazes one may differ.
+    assert suppressed(corners, pairs[refused], none_known, near).mean() > 0.99
+
+
+def test_on_a_page_full_of_ink_few_pairs_are_clear_of_corners() -> None:
+    clear = []
+    for count in (200, 800):
+        corners = np.random.default_rng(count).uniform(0, 199, (count, 2))
+        near, pairs = nearest(corners, (200, 200)), np.argwhere(np.triu(np.ones((count, count), bool), 1))
+        clear.append(clear_of_corners(corners, pairs, near).sum() / count)
+    assert clear[1] < 0.5 * clear[0] < 25
 
 
 def test_an_edge_that_others_cover_is_dropped_and_only_one_of_two() -> None:
