@@ -50,7 +50,7 @@ def test_what_the_quick_look_refuses_suppression_refuses_too() -> None:
     refused = ~clear_of_corners(corners, pairs, near)
     assert refused.sum() > 100
     # Both look up the nearest corner of whole pixels, at different places: a pair that grazes one may differ.
-    assert suppressed(corners, pairs[refused], none_known, near).mean() > 0.99
+    assert suppressed(corners, pairs[refused], none_known, near).mean() > 0.98
 
 
 def test_on_a_page_full_of_ink_few_pairs_are_clear_of_corners() -> None:
