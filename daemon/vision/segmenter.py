@@ -6,6 +6,7 @@ lines, corners (Raghav et al. 2020, Sec. 3.1; see the manifest beside the model)
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from dataclasses import dataclass
@@ -64,7 +65,7 @@ class Segmenter:
 
     def __init__(self, name: str = "linedrawd", *, threads: int = 1) -> None:
         self._manifest = load_manifest(name)
-        self._session = open_model(MODELS / self._manifest.file, threads=threads)
+        self._session = open_model(checked_file(self._manifest), threads=threads)
 
     def segment(self, page: PageImage) -> Segmentation:
         """Three maps of the page's shape, float32 in 0..1, that sum to 1 everywhere."""
@@ -84,6 +85,14 @@ class Segmenter:
         """ink float32 (N, H, W) in 0..1, H and W legal sizes -> float32 (N, 3, H, W)."""
         answer: NDArray[np.float32] = self._session.run(None, {"ink": ink[:, None]})[0]
         return answer
+
+
+def checked_file(manifest: Manifest) -> Path:
+    """The model's file. Raises SettingsError when it is not the one that the manifest speaks of."""
+    path = MODELS / manifest.file
+    if not path.is_file() or hashlib.sha256(path.read_bytes()).hexdigest() != manifest.sha256:
+        raise SettingsError(f"{path} is missing or damaged: install linedrawd again")
+    return path
 
 
 def open_model(path: Path, *, threads: int) -> onnxruntime.InferenceSession:
