@@ -16,7 +16,7 @@ CODE := daemon firmware_protocol training tests
 # onnxruntime reports home from its first import on unless this is set before it.
 export ORT_DISABLE_TELEMETRY := 1
 
-.PHONY: help demo test test-training test-system check format bench clean
+.PHONY: help demo test test-training test-system check format bench bench-fidelity clean
 
 help: ## What there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -46,6 +46,9 @@ format: $(VENV)/check ## Bring the code into form
 
 bench: $(VENV)/runtime ## The figures: seconds of each stage, lines a second, memory
 	@$(BIN)/python -m tests.benchmarks
+
+bench-fidelity: $(VENV)/runtime ## How close the strokes come, against the bars; QUICKDRAW=FILE adds real sketches
+	@$(BIN)/python -m tests.benchmarks.fidelity $(if $(QUICKDRAW),--quickdraw '$(QUICKDRAW)')
 
 clean: ## Remove what was made, also .venv and demo
 	rm -rf $(VENV) demo build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

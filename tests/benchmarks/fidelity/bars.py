@@ -1,0 +1,99 @@
+"""The figures of a set and the bars they are held against."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.benchmarks.fidelity.measure import Measure
+
+
+@dataclass(frozen=True, slots=True)
+class Scored:
+    """One drawing as one tool has traced it."""
+
+    name: str
+    measure: Measure
+    cpu_ms: float
+    network_cpu_ms: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """What a figure should be: not below low, not above high."""
+
+    low: float = -math.inf
+    high: float = math.inf
+
+    def __str__(self) -> str:
+        if math.isfinite(self.low) and math.isfinite(self.high):
+            return f"{self.low:g} to {self.high:g}"
+        return f">= {self.low:g}" if math.isfinite(self.low) else f"<= {self.high:g}"
+
+    def met(self, value: float) -> bool:
+        return self.low <= value <= self.high
+
+
+def mean_of(field: str) -> Callable[[Sequence[Scored]], float]:
+    def mean(scores: Sequence[Scored]) -> float:
+        return float(np.nanmean([getattr(score.measure, field) for score in scores]))
+
+    return mean
+
+
+def worst_f1(scores: Sequence[Scored]) -> float:
+    """Mean F1 of the worst twentieth, one drawing at least."""
+    ranked = sorted(score.measure.f1 for score in scores)
+    return float(np.mean(ranked[: max(1, len(ranked) // 20)]))
+
+
+def without_network(scores: Sequence[Scored]) -> float:
+    return float(np.median([score.cpu_ms - score.network_cpu_ms for score in scores]))
+
+
+FIGURES: dict[str, Callable[[Sequence[Scored]], float]] = {
+    "Chamfer, px": mean_of("chamfer_px"),
+    "precision at 1.5 px": mean_of("precision"),
+    "recall at 1.5 px": mean_of("recall"),
+    "F1": mean_of("f1"),
+    "worst 5 %: F1": worst_f1,
+    "re-ink IoU": mean_of("iou"),
+    "ink recalled": mean_of("ink_recall"),
+    "length ratio": mean_of("length_ratio"),
+    "strokes / minimum": mean_of("stroke_ratio"),
+    "pen-up, px": mean_of("pen_up_px"),
+    "CPU ms, median": lambda scores: float(np.median([score.cpu_ms for score in scores])),
+    "without the network": without_network,
+}
+"""Means over the drawings of a set, where nothing else is said."""
+
+_MOST_CPU_MS = Bar(high=60)
+
+BARS: dict[str, dict[str, Bar]] = {
+    "quickdraw": {
+        "Chamfer, px": Bar(high=0.12),
+        "precision at 1.5 px": Bar(0.995),
+        "recall at 1.5 px": Bar(0.995),
+        "worst 5 %: F1": Bar(0.97),
+        "re-ink IoU": Bar(0.955),
+        "length ratio": Bar(0.97, 1.02),
+        "strokes / minimum": Bar(high=1.05),
+        "without the network": _MOST_CPU_MS,
+    },
+    "scribbles": {"ink recalled": Bar(0.98)},
+    "curves": {
+        "Chamfer, px": Bar(high=0.11),
+        "F1": Bar(0.995),
+        "re-ink IoU": Bar(0.965),
+        "without the network": _MOST_CPU_MS,
+    },
+    "technical": {
+        "F1": Bar(0.99),
+        "re-ink IoU": Bar(0.93),
+        "length ratio": Bar(0.98, 1.03),
+        "strokes / minimum": Bar(high=1.3),
+    },
+}
