@@ -22,9 +22,9 @@ def order(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place) -> tuple
     """The same strokes, drawn one after the other on a short way from start_mm to end_mm.
 
     A stroke may be drawn from its other end, a closed one (first point = last point) from any of its points; nothing
-    else about it changes. Nearest neighbour first, then 2-opt (Croes 1958) and Or-opt (Or 1976); the work is bounded
-    by the number of strokes, never by a clock, so the same strokes always give the same order. Never longer than the
-    given order.
+    else about it changes. Nearest neighbour first, then 2-opt and Or-opt on neighbour lists with local kicks (see
+    `tour`); the work is bounded by the number of strokes, never by a clock, so the same strokes always give the same
+    order. Never longer than the given order.
     """
     if not strokes:
         return ()
@@ -32,6 +32,8 @@ def order(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place) -> tuple
     greedy = _nearest(given, start_mm)
     best = min((given, greedy), key=lambda tour: _travel(tour, start_mm, end_mm))
     improved = _turn_closed(_improved(best, start_mm, end_mm), start_mm, end_mm)
+    if not any(map(is_closed, given)):
+        return tuple(improved)
     return tuple(_turn_closed(_improved(improved, start_mm, end_mm), start_mm, end_mm))
 
 

@@ -1,106 +1,184 @@
-"""An open tour through segments that may be walked either way, made shorter by 2-opt and Or-opt."""
+"""An open tour through segments that may be walked either way, made shorter by iterated 2-opt and Or-opt."""
 
 from __future__ import annotations
 
+import math
+import random
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.toolpath.doors import nearest_doors
+
 Codes: TypeAlias = NDArray[np.int64]
 """Segments in order: 2 i where segment i is walked forwards, 2 i + 1 where it is walked backwards."""
 Place: TypeAlias = NDArray[np.float64]
 
-_PAIRS = 200_000_000
-"""Pairs of links looked at in all; it bounds the time whatever the number of segments."""
-_SWEEPS = 30
+_NEIGHBOURS = 8
 _LONGEST_MOVED = 3
+_LONGEST_KICKED = 50
+_LONGEST_FLIP = 1000
+"""Longer stretches are not turned round: it bounds the work on pages of thousands of strokes."""
+_KICKS_A_SEGMENT, _MOST_KICKS = 15, 1500
 _LEAST_GAIN = 1e-9
 
 
 def improve(ends: NDArray[np.float64], *, start: Place, end: Place) -> Codes:
-    """The tour 0, 1, 2, ... made shorter until no move helps or the work is up.
+    """The tour 0, 1, 2, ... made shorter: 2-opt (Croes 1958) and Or-opt (Or 1976), kicked on by double bridges.
 
     ends: (N, 2, 2) float64, both ends of each segment as (x, y). start, end: (2,) where the tour begins and ends.
-    Returns (N,) int64 codes. Never longer than the given tour, and the same for the same input. Cost O(N^2) a sweep,
-    bounded by a window of links for large N.
+    Returns (N,) int64 codes. Never longer than the given tour, and the same for the same input: the work is bounded by
+    the number of segments, never by a clock. Iterated local search after Martin, Otto and Felten (1991), the kicks
+    local, so that a round costs the same on a large page.
     """
-    tour = _Tour(ends, start, end)
-    window = max(64, _PAIRS // (len(ends) * 4 * (_LONGEST_MOVED + 1) + 1))
-    sweeps = min(_SWEEPS, max(1, _PAIRS // (len(ends) * min(window, len(ends)) * 8 + 1)))
-    for _ in range(sweeps):
-        reversed_some = _two_opt(tour, window)
-        if not _or_opt(tour, window) and not reversed_some:
-            break
-    return tour.codes
+    # A last segment leads from the end back to the start: the tour is a ring, and every move may turn either side.
+    tour = _Tour(np.concatenate([ends.reshape(-1, 2), [end, start]]))
+    tour.settle(list(range(len(tour.x))))
+    chance = random.Random(0)
+    for _ in range(min(_MOST_KICKS, _KICKS_A_SEGMENT * len(ends)) if len(ends) > 2 else 0):
+        tour.kick(chance)
+    return np.array(tour.opened(), np.int64)
 
 
 class _Tour:
-    """Link k leads from `leave[k]` to `arrive[k]`: from the start, or segment k - 1, to segment k, or the end."""
+    """A ring of segments. A door is an end of a segment, 2 i or 2 i + 1; a link joins two doors of two segments.
 
-    __slots__ = ("_doors", "_end", "_start", "arrive", "codes", "leave", "links")
+    `ring` holds the door by which each segment is entered, `at` the place of each segment in it.
+    """
 
-    def __init__(self, ends: NDArray[np.float64], start: Place, end: Place) -> None:
-        self._doors = ends.reshape(-1, 2)
-        self._start, self._end = start[None], end[None]
-        self.set(2 * np.arange(len(ends), dtype=np.int64))
+    __slots__ = ("_done", "at", "near", "ring", "x", "y")
 
-    def set(self, codes: Codes) -> None:
-        self.codes = codes
-        self.leave = np.concatenate([self._start, self._doors[codes ^ 1]])
-        self.arrive = np.concatenate([self._doors[codes], self._end])
-        self.links = _far(self.leave, self.arrive)
+    def __init__(self, doors: NDArray[np.float64]) -> None:
+        self.x, self.y = doors[:, 0].tolist(), doors[:, 1].tolist()
+        self.near = nearest_doors(doors, _NEIGHBOURS)
+        self.ring = list(range(0, len(doors), 2))
+        self.at = list(range(len(self.ring)))
+        self._done: list[tuple[int, int, int, int]] = []
 
+    def opened(self) -> list[int]:
+        """The codes from the start to the end: the ring cut at its last segment."""
+        last = len(self.ring) - 1
+        cut = self.at[last]
+        codes = self.ring[cut + 1 :] + self.ring[:cut]
+        return codes if self.ring[cut] == 2 * last else [code ^ 1 for code in reversed(codes)]
 
-def _far(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    off = a - b
-    distance: NDArray[np.float64] = np.sqrt((off * off).sum(axis=-1))
-    return distance
+    def settle(self, doors: list[int]) -> float:
+        """Move until no move at these doors, or at doors moved meanwhile, helps. Returns by how much it is shorter."""
+        gained = 0.0
+        while doors:
+            gain = self._improve(doors[-1], doors)
+            gained += gain
+            if not gain:
+                doors.pop()
+        return gained
 
+    def kick(self, chance: random.Random) -> None:
+        """Exchange two neighbouring stretches, settle, and take all of it back where the tour has become longer."""
+        size = len(self.ring)
+        one, other = (chance.randint(1, min(_LONGEST_KICKED, (size - 1) // 2)) for _ in range(2))
+        first = chance.randrange(size)
+        near, far = self.ring[first], self.ring[(first + one - 1) % size] ^ 1
+        leave = self.ring[(first + one + other - 1) % size] ^ 1
+        self._done.clear()
+        gain, moved = self._carry(near, far, leave)
+        if gain + self.settle(moved) < -_LEAST_GAIN:
+            for a, b, c, d in reversed(self._done):
+                self._flip(a, c, b, d)
 
-def _two_opt(tour: _Tour, window: int) -> bool:
-    """Walk a run of segments backwards where that is shorter: links i and k are replaced."""
-    improved = False
-    for i in range(len(tour.codes)):
-        to = slice(i + 1, i + 1 + window)
-        new = _far(tour.leave[to], tour.leave[i]) + _far(tour.arrive[to], tour.arrive[i])
-        gain = tour.links[i] + tour.links[to] - new
-        best = int(np.argmax(gain))
-        if gain[best] > _LEAST_GAIN:
-            k = i + 1 + best
-            codes = tour.codes.copy()
-            codes[i:k] = codes[i:k][::-1] ^ 1
-            tour.set(codes)
-            improved = True
-    return improved
+    def _far(self, a: int, b: int) -> float:
+        return math.hypot(self.x[a] - self.x[b], self.y[a] - self.y[b])
 
+    def _entered(self, door: int) -> bool:
+        """Whether the segment is entered by this door; else it is left by it."""
+        return self.ring[self.at[door >> 1]] == door
 
-def _or_opt(tour: _Tour, window: int) -> bool:
-    """Move one to three segments into another link, either way round."""
-    improved = False
-    for count in range(1, _LONGEST_MOVED + 1):
-        for i in range(len(tour.codes) - count + 1):
-            improved |= _move(tour, i, i + count, window)
-    return improved
+    def _mate(self, door: int) -> int:
+        """The door at the other end of this door's link."""
+        at = self.at[door >> 1]
+        if self.ring[at] == door:
+            return self.ring[at - 1] ^ 1
+        return self.ring[at + 1 - len(self.ring)]
 
+    def _improve(self, door: int, moved: list[int]) -> float:
+        """The first move that brings a neighbour of this door next to it and makes the tour shorter; 0 for none."""
+        ring, at = self.ring, self.at
+        mate, entered = self._mate(door), ring[at[door >> 1]] == door
+        link = self._far(door, mate)
+        for other, new in self.near[door]:
+            if new >= link:
+                break
+            if other == mate:
+                continue
+            beyond = self._mate(other)
+            saved = link - new + self._far(other, beyond)
+            if (ring[at[other >> 1]] == other) == entered:
+                gain = saved - self._far(mate, beyond)
+                if gain > _LEAST_GAIN and self._short(door, other):
+                    self._flip(door, mate, other, beyond)
+                    moved += (door, mate, other, beyond)
+                    return gain
+            gain = self._or_opt((door, mate, other, beyond), saved, moved)
+            if gain:
+                return gain
+        return 0.0
 
-def _move(tour: _Tour, i: int, j: int, window: int) -> bool:
-    """Move segments i to j - 1 into the best link within the window, if that is shorter."""
-    saved = tour.links[i] + tour.links[j] - _far(tour.leave[i], tour.arrive[j])
-    if saved <= _LEAST_GAIN:
-        return False
-    low, high = max(0, i - window), min(len(tour.links), j + window)
-    first, last = tour.arrive[i], tour.leave[j]
-    leave, arrive = tour.leave[low:high], tour.arrive[low:high]
-    detour = np.stack([_far(leave, first) + _far(arrive, last), _far(leave, last) + _far(arrive, first)])
-    detour -= tour.links[low:high]
-    detour[:, i - low : j - low + 1] = np.inf
-    best = int(np.argmin(detour))
-    backwards, k = best // (high - low) == 1, best % (high - low) + low
-    if saved - detour.flat[best] <= _LEAST_GAIN:
-        return False
-    moved = tour.codes[i:j][::-1] ^ 1 if backwards else tour.codes[i:j]
-    rest = np.delete(tour.codes, np.s_[i:j])
-    at = k if k < i else k - (j - i)
-    tour.set(np.concatenate([rest[:at], moved, rest[at:]]))
-    return True
+    def _or_opt(self, doors: tuple[int, int, int, int], saved: float, moved: list[int]) -> float:
+        """Carry the one to three segments that begin at a door into the link of another, the two doors linked."""
+        near, before, target, beyond = doors
+        ring, size, place = self.ring, len(self.ring), self.at[near >> 1]
+        step = 1 if ring[place] == near else -1
+        for _ in range(min(_LONGEST_MOVED, size - 2)):
+            code = ring[place]
+            if code >> 1 in (target >> 1, beyond >> 1):
+                return 0.0
+            place = (place + step) % size
+            far, after = (code ^ 1, ring[place]) if step > 0 else (code, ring[place] ^ 1)
+            gain = saved + self._far(far, after) - self._far(before, after) - self._far(far, beyond)
+            if gain > _LEAST_GAIN and self._short(near, target):
+                moved += self._carry(near, far, target)[1]
+                return gain
+        return 0.0
+
+    def _short(self, a: int, b: int) -> bool:
+        away = abs(self.at[a >> 1] - self.at[b >> 1])
+        return min(away, len(self.ring) - away) <= _LONGEST_FLIP
+
+    def _carry(self, near: int, far: int, target: int) -> tuple[float, list[int]]:
+        """Carry the run from door `near` to door `far` into the link of `target`, `near` next to it.
+
+        Returns by how much the tour is shorter and the six doors whose links are new.
+        """
+        before, after, beyond = self._mate(near), self._mate(far), self._mate(target)
+        gain = self._far(before, near) + self._far(far, after) + self._far(target, beyond)
+        gain -= self._far(before, after) + self._far(near, target) + self._far(far, beyond)
+        if self._entered(near) == self._entered(target):
+            self._flip(before, near, beyond, target)
+            self._flip(before, beyond, after, far)
+        else:
+            self._flip(before, near, far, after)
+            self._flip(before, far, target, beyond)
+            self._flip(before, target, after, near)
+        return gain, [before, near, far, after, target, beyond]
+
+    def _flip(self, a: int, b: int, c: int, d: int) -> None:
+        """Links a-b and c-d become a-c and b-d; one of the two stretches between them is turned round."""
+        if a == d or b == c:
+            return
+        self._done.append((a, b, c, d))
+        size = len(self.ring)
+        first, last = (a, d) if self._entered(a) else (b, c)
+        low, high = self.at[first >> 1], self.at[last >> 1]
+        count = (high - low) % size + 1
+        if 2 * count > size:
+            low, count = high + 1, size - count
+        self._turn(low % size, count)
+
+    def _turn(self, low: int, count: int) -> None:
+        """Walk `count` segments from place `low` on backwards."""
+        ring, at, size = self.ring, self.at, len(self.ring)
+        places = range(low, low + count) if low + count <= size else [k % size for k in range(low, low + count)]
+        turned = [ring[place] ^ 1 for place in reversed(places)]
+        for place, code in zip(places, turned, strict=True):
+            ring[place] = code
+            at[code >> 1] = place

@@ -81,7 +81,7 @@ def test_four_strokes_get_the_best_order_of_all() -> None:
         rng = np.random.default_rng(seed)
         strokes = [Stroke(points) for points in rng.uniform(0, 100, (4, 2, 2))]
         best = min(travelled(walk) for walk in every_walk(strokes))
-        assert travelled(order(strokes, start_mm=START, end_mm=END)) <= 1.05 * best
+        assert travelled(order(strokes, start_mm=START, end_mm=END)) <= 1.0001 * best
 
 
 def every_walk(strokes: list[Stroke]) -> list[list[Stroke]]:
@@ -95,7 +95,7 @@ def every_walk(strokes: list[Stroke]) -> list[list[Stroke]]:
     ]
 
 
-@pytest.mark.parametrize(("count", "most_mm"), [(100, 730), (300, 1060)])
+@pytest.mark.parametrize(("count", "most_mm"), [(100, 620), (300, 985)])
 def test_random_strokes_are_travelled_nearly_as_shortly_as_is_known(count: int, most_mm: float) -> None:
     assert travelled(order(random_lines(count), start_mm=(0, 0), end_mm=(0, 0)), (0, 0), (0, 0)) < most_mm
 
