@@ -51,7 +51,7 @@ class Stepper:
         self._pieces: deque[_Piece] = deque()
         self._now = 0.0
         self._end_s = 0.0
-        self._prepared = False
+        self._prepared = self._held = False
         self.position_mm: Vector = (0.0, 0.0, 0.0)
         self.moving = False
 
@@ -74,15 +74,15 @@ class Stepper:
 
     def start(self, now: float) -> None:
         """Set the motors going, when there is something to do."""
-        self._now = now
+        self._now, self._held = now, False
         if self.lookahead.blocks and not self.moving:
             self.moving = True
             self._end_s = now
             self._prepare()
 
     def planned(self) -> None:
-        """A block has been added: while moving it follows on."""
-        if self.moving and not self._prepared and self.lookahead.blocks:
+        """A block has been added: while moving it follows on, unless a hold has been asked for."""
+        if self.moving and not self._held and not self._prepared and self.lookahead.blocks:
             self._prepare()
 
     def advance(self, now: float) -> bool:
@@ -102,8 +102,9 @@ class Stepper:
         return changed
 
     def hold(self, now: float) -> None:
-        """Slow down to a stop as fast as the acceleration allows, across blocks; the rest stays planned."""
+        """Slow down to a stop as fast as the acceleration allows, across blocks; the rest waits for `start`."""
         self.advance(now)
+        self._held = True
         if not self._prepared:
             return
         self._settle()
@@ -151,7 +152,7 @@ class Stepper:
 
     def _forget(self) -> None:
         self._pieces.clear()
-        self._prepared = self.moving = False
+        self._prepared = self._held = self.moving = False
         self.lookahead.reset(self.position_mm)
         self.position_mm = self.lookahead.millimetres(self.lookahead.steps(self.position_mm))
 

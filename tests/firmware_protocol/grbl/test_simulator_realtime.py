@@ -64,6 +64,18 @@ def test_a_hold_runs_over_the_ends_of_short_moves() -> None:
     assert conversation.sim.position_mm == pytest.approx((11.9, 0.0, 0.0))
 
 
+def test_a_line_that_finds_a_place_in_the_planner_while_the_machine_slows_down_does_not_set_it_going() -> None:
+    conversation = talk()
+    conversation.ask("G1X.2F600\n" + "".join(f"X{n / 5:g}\n" for n in range(2, 24)), within_s=0.12)
+    answered = len(conversation.heard)
+    conversation.ask("!", within_s=0.5)
+    assert len(conversation.heard) > answered
+    assert conversation.ask("?")[-1].startswith("<Hold:0|")
+    assert conversation.sim.position_mm[0] < 2.0
+    conversation.ask("~", within_s=2.0)
+    assert conversation.sim.position_mm == pytest.approx((4.6, 0.0, 0.0))
+
+
 def test_lines_wait_while_the_machine_holds() -> None:
     conversation = talk()
     conversation.ask("!")
