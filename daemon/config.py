@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from daemon.errors import SettingsError
+from daemon.places import usual_file, usual_paths
 
 DEFAULT_MACHINE = "plotter"
 """What the machine is called where no file names one."""
@@ -71,11 +72,26 @@ class Planning(Section):
 
 
 class Sheet(Section):
-    """Where on the sheet a picture is drawn, in mm from the sheet's lower left corner, and how exactly."""
+    """Where on the sheet a picture is drawn, in mm inwards from the corner where the origin lies, and how exactly."""
 
     box_mm: tuple[Positive, Positive] = (64.0, 64.0)
     box_origin_mm: PairMm = (25.0, 25.0)
+    corner: Literal["lower left", "lower right", "upper left", "upper right"] = "lower left"
+    """The sheet's corner where the origin lies; x still runs to the right and y up."""
+    size: Literal["fit", "true"] = "fit"
+    """"fit": as large as the box; "true": as large as the picture's resolution says, in the middle of the box."""
+    margin_mm: Annotated[float, Field(ge=0)] = 0.0
+    rotate: Literal[0, 90, 180, 270] = 0
+    """Degrees clockwise."""
+    mirror: bool = False
+    """Left and right exchanged, before it is turned."""
     error_mm: Positive = 0.05
+
+    @model_validator(mode="after")
+    def _room_inside_the_margin(self) -> Sheet:
+        if 2 * self.margin_mm >= min(self.box_mm):
+            raise ValueError(f"margin_mm = {self.margin_mm:g} leaves no room in box_mm: make it smaller")
+        return self
 
 
 class ZPenSettings(Section):
@@ -120,6 +136,8 @@ class Machine(Section):
     origin_mm: PairMm = (0.0, 0.0)
     park_mm: PairMm = (0.0, 0.0)
     draw_mm_s: Annotated[float, Field(gt=0, le=1000)] = 20.0
+    resolution_mm: Annotated[float, Field(ge=0, le=1)] = 0.02
+    """Shorter moves are not sent: the length of a few steps of the motors."""
     pen: PenSettings = ZPenSettings(kind="z")
     dialect: Literal["grbl", "paper"] = "grbl"
     units: Literal["mm", "cm", "inch"] = "mm"
@@ -201,7 +219,7 @@ def load_settings(
 
     machine_needed: a machine must have been named, by `--device`, `--port` or a `[machines.NAME]` section.
     """
-    file = options.config or _usual_file(environment)
+    file = options.config or usual_file(environment)
     raw = _read_toml(file) if file else {}
     if machine_needed and not (raw.get("machines") or options.device or options.port):
         raise SettingsError("no machine is set: give --device grbl (or --device sim), or a [machines.NAME] section")
@@ -210,12 +228,6 @@ def load_settings(
         return Settings.model_validate(_with_machine(_with_paths(raw, options, environment), options))
     except ValidationError as error:
         raise SettingsError(_explain(error, place)) from None
-
-
-def _usual_file(environment: Mapping[str, str]) -> Path | None:
-    home = environment.get("HOME", "/nonexistent")
-    folders = [Path(environment.get("XDG_CONFIG_HOME") or f"{home}/.config") / "linedrawd", Path("/etc/linedrawd")]
-    return next((file for folder in folders if (file := folder / "linedrawd.toml").is_file()), None)
 
 
 def _read_toml(file: Path) -> dict[str, Any]:
@@ -232,7 +244,7 @@ def _with_paths(raw: dict[str, Any], options: Options, environment: Mapping[str,
     if not isinstance(given, dict):
         return raw
     said = {name: getattr(options, name) or given.get(name) for name in ("state_dir", "inbox", "log_dir")}
-    usual = _usual_paths(environment, str(said["state_dir"]) if said["state_dir"] else None)
+    usual = usual_paths(environment, str(said["state_dir"]) if said["state_dir"] else None)
     paths = usual | given | {name: value for name, value in said.items() if value}
     paths.setdefault("inbox", f"{paths['state_dir']}/inbox")
     return raw | {"paths": {name: _absolute(value) for name, value in paths.items()}}
@@ -240,21 +252,6 @@ def _with_paths(raw: dict[str, Any], options: Options, environment: Mapping[str,
 
 def _absolute(value: Any) -> Any:
     return Path(value).expanduser().absolute() if isinstance(value, str | Path) else value
-
-
-def _usual_paths(environment: Mapping[str, str], state_dir: str | None) -> dict[str, str]:
-    """systemd's folders where it gave some; below a state folder somebody chose; root's; the user's own."""
-    home = environment.get("HOME") or str(Path.home())
-    below = state_dir or environment.get("XDG_STATE_HOME", f"{home}/.local/state") + "/linedrawd"
-    paths = {"state_dir": below, "log_dir": f"{below}/log", "runtime_dir": f"{below}/run"}
-    if state_dir is None and environment.get("XDG_RUNTIME_DIR"):
-        paths["runtime_dir"] = environment["XDG_RUNTIME_DIR"] + "/linedrawd"
-    if state_dir is None and os.geteuid() == 0:
-        paths = {"state_dir": "/var/lib/linedrawd", "log_dir": "/var/log/linedrawd", "runtime_dir": "/run/linedrawd"}
-    for name, variable in [("state_dir", "STATE_"), ("log_dir", "LOGS_"), ("runtime_dir", "RUNTIME_")]:
-        if environment.get(f"{variable}DIRECTORY"):
-            paths[name] = environment[f"{variable}DIRECTORY"].split(":")[0]
-    return paths
 
 
 def _with_machine(raw: dict[str, Any], options: Options) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from daemon.jobs.states import State
 from daemon.report.fidelity import Fidelity
 from daemon.report.report import executed_report, planned_report, to_json
 from daemon.shapes import LineGraph, PageImage, Stroke, Toolpath
-from daemon.toolpath.place import placement
+from daemon.toolpath.place import Layout, placement
 from tests.demo import DRAWINGS, OVER, Seen, drop, line_of, main, row_of, seen_jobs
 
 LINE = np.array([[10.0, 20.0], [110.0, 20.0]])
@@ -39,7 +39,7 @@ def drawn_job(settings: Settings) -> Seen:
     ink_mm = [[25 + 0.5 * 10.5, 89 - 16 - 0.5 * 20.5], [25 + 0.5 * 110.5, 89 - 16 - 0.5 * 20.5]]
     (folder / "ink.json").write_text(json.dumps({"strokes": [ink_mm]}))
     page = PageImage(grey, np.eye(2, 3), 128, 64, "")
-    from_px = placement(128, 64, box_mm=settings.sheet.box_mm, box_origin_mm=settings.sheet.box_origin_mm)
+    from_px = placement(128, 64, Layout(settings.sheet.box_mm, settings.sheet.box_origin_mm))
     toolpath = Toolpath((Stroke(LINE),), from_px)
     figures = Fidelity(1.0, 0.9, 0.947, 0.8)
     planned = planned_report(

@@ -24,6 +24,7 @@ from daemon.graph.strokes import strokes
 from daemon.intake.decode import decode
 from daemon.jobs.folder import write_durably
 from daemon.jobs.pens import pen_of
+from daemon.jobs.sheet import box_origin_mm, reach_low_mm
 from daemon.page.prepare import even_out, prepare
 from daemon.program.file import program_text
 from daemon.program.gcode import write_gcode
@@ -35,12 +36,15 @@ from daemon.report.fidelity import Fidelity, fidelity, line_width_px
 from daemon.report.preview import preview
 from daemon.report.report import executed_report, from_json, planned_report, to_json
 from daemon.shapes import Affine, Drawing, LineGraph, PageImage, Points, Program, Segmentation, Stroke, Toolpath
-from daemon.toolpath.place import invert, place
-from daemon.toolpath.plan import plan_toolpath
+from daemon.toolpath.place import Layout, invert, place
+from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
 from firmware_protocol.grbl.planner import line_times_s
 
 Progress: TypeAlias = Callable[[str], None]
+
+_ERROR_PX = 0.25
+"""Of the page as it is read: how far simplification may lead a line aside, whatever error_mm says."""
 
 
 def _silent(stage: str) -> None:
@@ -62,7 +66,7 @@ def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *
         on_page = _strokes(graph, page, settings)
         drawing = on_given(on_page, page)
     with stages("toolpath"):
-        toolpath = _toolpath(drawing, settings.sheet, settings.machines[machine])
+        toolpath = _toolpath(drawing, page, settings.sheet, settings.machines[machine])
     with stages("program"):
         program = _program(toolpath, settings.machines[machine])
         estimated_s = line_times_s([line.text for line in program.lines])[-1]
@@ -126,21 +130,17 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
     return strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
 
 
-def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
-    """The box's lower left corner in machine mm. The sheet's corner is where the pen stands or, homed, at origin_mm."""
-    corner_mm = machine.origin_mm if machine.origin == "homed" else (0.0, 0.0)
-    return sheet.box_origin_mm[0] + corner_mm[0], sheet.box_origin_mm[1] + corner_mm[1]
-
-
-def _toolpath(drawing: Drawing, sheet: Sheet, machine: Machine) -> Toolpath:
+def _toolpath(drawing: Drawing, page: PageImage, sheet: Sheet, machine: Machine) -> Toolpath:
+    corner_mm = box_origin_mm(sheet, machine)
+    given_px = float(np.sqrt(abs(np.linalg.det(page.to_given[:, :2]))))
     return plan_toolpath(
         drawing,
-        box_mm=sheet.box_mm,
-        box_origin_mm=box_origin_mm(sheet, machine),
-        error_mm=sheet.error_mm,
+        layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, sheet.size == "true"),
+        precision=Precision(sheet.error_mm, _ERROR_PX * given_px, machine.resolution_mm),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,
         reach_mm=machine.reach_mm,
+        reach_low_mm=reach_low_mm(sheet, machine),
     )
 
 

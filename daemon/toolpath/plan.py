@@ -2,44 +2,70 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from daemon.errors import NothingToDraw
-from daemon.shapes import Drawing, Toolpath
+from daemon.shapes import Affine, Drawing, Stroke, Toolpath
 from daemon.toolpath.order import order
-from daemon.toolpath.place import place, placement
+from daemon.toolpath.place import Layout, place, placement
 from daemon.toolpath.reach import check_reach
-from daemon.toolpath.simplify import simplify
+from daemon.toolpath.simplify import shared_points, simplify
+
+
+@dataclass(frozen=True, slots=True)
+class Precision:
+    """How far a drawn line may leave the given one: the smaller of error_mm and error_px, in px of the drawing.
+
+    shortest_mm: a segment shorter than this is left out where it may be, for the machine cannot resolve it.
+    """
+
+    error_mm: float = 0.05
+    error_px: float = 0.25
+    shortest_mm: float = 0.0
+
+
+IN_THE_BOX, PRECISE = Layout(), Precision()
 
 
 def plan_toolpath(
     drawing: Drawing,
     *,
-    box_mm: tuple[float, float] = (64.0, 64.0),
-    box_origin_mm: tuple[float, float] = (25.0, 25.0),
-    error_mm: float = 0.05,
+    layout: Layout = IN_THE_BOX,
+    precision: Precision = PRECISE,
     start_mm: tuple[float, float] = (0.0, 0.0),
     park_mm: tuple[float, float] = (0.0, 0.0),
     reach_mm: tuple[float, float] | None = None,
     reach_low_mm: tuple[float, float] = (0.0, 0.0),
 ) -> Toolpath:
-    """Everything in machine mm, y up; the picture fits the box, its proportions kept.
+    """Everything in machine mm, y up; the picture lies in its box, its proportions kept.
 
-    box_origin_mm: the box's lower left corner in machine coordinates: with origin "here" (the pen stands on the
-    sheet's corner at start) the sheet's own, with origin "homed" plus `origin_mm`. error_mm: how far a drawn line may
-    leave the given polyline. start_mm: where the pen stands; park_mm: where it goes at the end. reach_mm: width and
-    height from reach_low_mm on, None where they are not known. No stroke is lost; a stroke may be drawn from its
-    other end, a closed one from another point. Raises NothingToDraw without strokes, OutOfReach before anything moves.
+    The box lies in machine coordinates: with origin "here" (the pen stands on the sheet's corner at start) the sheet's
+    own, with origin "homed" plus `origin_mm`. start_mm: where the pen stands; park_mm: where it goes at the end.
+    reach_mm: width and height from reach_low_mm on, None where they are not known. No stroke is lost; a stroke may be
+    drawn from its other end, a closed one from another point; ends and crossings lie exactly where they were. Raises
+    NothingToDraw without strokes, OutOfReach before anything moves.
     """
     if not drawing.strokes:
         raise NothingToDraw(
             f"the picture of {drawing.width_px} x {drawing.height_px} px holds no line to draw: "
             "give a drawing with dark lines on light paper or light lines on dark paper"
         )
-    from_px = placement(drawing.width_px, drawing.height_px, box_mm=box_mm, box_origin_mm=box_origin_mm)
-    placed = [
-        replace(stroke, points=simplify(place(stroke.points, from_px), error=error_mm)) for stroke in drawing.strokes
-    ]
+    from_px = placement(drawing.width_px, drawing.height_px, layout, px_per_mm=drawing.px_per_mm)
+    placed = _placed(drawing, from_px, precision)
     if reach_mm is not None:
         check_reach(placed, reach_mm=reach_mm, reach_low_mm=reach_low_mm, park_mm=park_mm)
     return Toolpath(order(placed, start_mm=start_mm, end_mm=park_mm), from_px, start_mm, park_mm)
+
+
+def _placed(drawing: Drawing, from_px: Affine, precision: Precision) -> list[Stroke]:
+    """The strokes in mm, with as few points as the precision allows."""
+    mm_per_px = float(np.sqrt(abs(np.linalg.det(from_px[:, :2]))))
+    error_mm = min(precision.error_mm, precision.error_px * mm_per_px)
+    crossings = shared_points([stroke.points for stroke in drawing.strokes])
+    lines = [
+        simplify(place(stroke.points, from_px), error=error_mm, kept=kept, shortest=precision.shortest_mm)
+        for stroke, kept in zip(drawing.strokes, crossings, strict=True)
+    ]
+    return [replace(stroke, points=line) for stroke, line in zip(drawing.strokes, lines, strict=True)]

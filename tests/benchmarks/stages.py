@@ -19,6 +19,7 @@ from daemon.report import canvas
 from daemon.report.explain import explain
 from daemon.report.fidelity import fidelity, line_width_px
 from daemon.report.preview import preview
+from daemon.toolpath.place import Layout
 from daemon.toolpath.plan import plan_toolpath
 from daemon.vision.segmenter import Segmenter
 from firmware_protocol.grbl.planner import line_times_s
@@ -83,7 +84,7 @@ def planned(picture: Path, segmenter: Segmenter, watch: Stopwatch) -> str:
     graph = watch("graph", lambda: interpret(page, segmentation))
     height, width = page.grey.shape
     drawing = watch("strokes", lambda: strokes(graph, width_px=width, height_px=height))
-    toolpath = watch("toolpath", lambda: plan_toolpath(drawing, box_mm=_BOX_MM, box_origin_mm=_CORNER_MM))
+    toolpath = watch("toolpath", lambda: plan_toolpath(drawing, layout=Layout(_BOX_MM, _CORNER_MM)))
     program = watch("program", lambda: write_gcode(toolpath, pen=ZPen(up_mm=5, down_mm=0), draw_mm_s=20))
     times_s = watch("estimate", lambda: line_times_s([line.text for line in program.lines]))
     lines = [stroke.points for stroke in drawing.strokes]

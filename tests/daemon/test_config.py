@@ -37,6 +37,8 @@ def settings(text: str, folder: Path, *, device: str | None = None, port: str | 
         ("[machines.left]\ndevice = 'emco'", "device 'emco' comes with a later version"),
         ("[machines.left.pen]\nkind = 'z'\nup_mm = -1", "pen.up_mm = -1 must be above pen.down_mm = 0"),
         ("[machines.left]\n[machines.right]", "2 machines are set, this version drives one"),
+        ("[sheet]\nmargin_mm = 32", "sheet: margin_mm = 32 leaves no room in box_mm: make it smaller"),
+        ("[sheet]\nrotate = 45", "[sheet] rotate: Input should be 0, 90, 180 or 270"),
         ("[planning", "is not TOML"),
     ],
 )

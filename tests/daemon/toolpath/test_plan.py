@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.errors import NothingToDraw, OutOfReach
+from daemon.errors import NothingToDraw, OutOfReach, SettingsError
 from daemon.shapes import Drawing, Stroke
-from daemon.toolpath.place import invert, place, placement
-from daemon.toolpath.plan import plan_toolpath
+from daemon.toolpath.place import Layout, invert, place, placement
+from daemon.toolpath.plan import Precision, plan_toolpath
 
 sizes = st.integers(1, 2000)
 lengths = st.floats(1, 500)
@@ -25,7 +25,7 @@ def drawing(*strokes: list[tuple[float, float]], width_px: int = 101, height_px:
 def test_the_picture_touches_the_box_on_two_sides_and_is_centred(
     width_px: int, height_px: int, width_mm: float, height_mm: float
 ) -> None:
-    from_px = placement(width_px, height_px, box_mm=(width_mm, height_mm), box_origin_mm=(25, 30))
+    from_px = placement(width_px, height_px, Layout((width_mm, height_mm), (25, 30)))
     low, high = np.sort(place(np.array([[-0.5, -0.5], [width_px - 0.5, height_px - 0.5]]), from_px), axis=0)
     left, bottom = low - (25, 30)
     right, top = np.array([25 + width_mm, 30 + height_mm]) - high
@@ -34,13 +34,43 @@ def test_the_picture_touches_the_box_on_two_sides_and_is_centred(
 
 
 def test_y_points_up_and_proportions_are_kept() -> None:
-    from_px = placement(200, 100, box_mm=(64, 64), box_origin_mm=(25, 25))
+    from_px = placement(200, 100, Layout((64, 64), (25, 25)))
     corners = place(np.array([[-0.5, -0.5], [199.5, 99.5]]), from_px)
     assert corners.tolist() == [[25, 73], [89, 41]]
 
 
+def turned(**how: object) -> list[list[float]]:
+    """Where the upper left corner and the upper right corner of a picture of 200 x 100 px come to lie, in mm."""
+    from_px = placement(200, 100, Layout((200, 200), (0, 0), **how))  # type: ignore[arg-type]
+    return place(np.array([[-0.5, -0.5], [199.5, -0.5]]), from_px).round(6).tolist()
+
+
+def test_a_picture_is_turned_clockwise_and_mirrored_before() -> None:
+    assert turned() == [[0, 150], [200, 150]]
+    assert turned(rotate=90) == [[150, 200], [150, 0]]
+    assert turned(rotate=180) == [[200, 50], [0, 50]]
+    assert turned(rotate=270) == [[50, 0], [50, 200]]
+    assert turned(mirror=True) == [[200, 150], [0, 150]]
+    assert turned(mirror=True, rotate=90) == [[150, 0], [150, 200]]
+
+
+def test_a_margin_is_left_free_all_round() -> None:
+    assert turned(margin_mm=10.0) == [[10, 145], [190, 145]]
+
+
+def test_true_size_is_what_the_resolution_says_in_the_middle_of_the_box() -> None:
+    from_px = placement(200, 100, Layout((60, 60), (10, 10), true_size=True), px_per_mm=10.0)
+    corners = place(np.array([[-0.5, -0.5], [199.5, 99.5]]), from_px)
+    assert corners == pytest.approx(np.array([[30, 45], [50, 35]]))
+
+
+def test_true_size_of_a_picture_without_resolution_is_refused() -> None:
+    with pytest.raises(SettingsError, match=r"states no resolution: save it .* or set size = 'fit'"):
+        plan_toolpath(drawing([(0, 0), (50, 0)]), layout=Layout(true_size=True))
+
+
 def test_the_way_back_leads_to_the_same_pixel() -> None:
-    from_px = placement(200, 100, box_mm=(64, 50), box_origin_mm=(25, 30))
+    from_px = placement(200, 100, Layout((64, 50), (25, 30)))
     pixels = np.array([[0.0, 0], [12.5, 99]])
     assert place(place(pixels, from_px), invert(from_px)) == pytest.approx(pixels)
 
@@ -48,7 +78,7 @@ def test_the_way_back_leads_to_the_same_pixel() -> None:
 @pytest.mark.parametrize(("width_px", "box_mm"), [(0, (64, 64)), (10, (0, 64))])
 def test_an_empty_picture_or_box_is_refused(width_px: int, box_mm: tuple[float, float]) -> None:
     with pytest.raises(ValueError, match="give sizes"):
-        placement(width_px, 10, box_mm=box_mm, box_origin_mm=(0, 0))
+        placement(width_px, 10, Layout(box_mm, (0, 0)))
 
 
 @settings(max_examples=50)
@@ -62,7 +92,7 @@ def test_an_empty_picture_or_box_is_refused(width_px: int, box_mm: tuple[float, 
 )
 def test_every_stroke_arrives_inside_the_box_with_its_length(strokes: list[list[tuple[float, float]]]) -> None:
     given_drawing = drawing(*strokes)
-    toolpath = plan_toolpath(given_drawing, error_mm=0.0, box_mm=(64, 64), box_origin_mm=(25, 25))
+    toolpath = plan_toolpath(given_drawing, precision=Precision(error_mm=0.0))
     points = np.concatenate([stroke.points for stroke in toolpath.strokes])
     assert len(toolpath.strokes) == len(strokes)
     assert points.min() >= 25 - 1e-9
@@ -85,7 +115,7 @@ def test_a_park_position_out_of_reach_is_named() -> None:
 def test_a_drawing_that_just_fits_is_drawn() -> None:
     edge = drawing([(-0.5, -0.5), (100.5, 100.5)])
     for side_mm in (64, 64.1, 33.3, 0.7):
-        toolpath = plan_toolpath(edge, box_mm=(side_mm, side_mm), reach_mm=(25 + side_mm, 25 + side_mm))
+        toolpath = plan_toolpath(edge, layout=Layout((side_mm, side_mm)), reach_mm=(25 + side_mm, 25 + side_mm))
         assert toolpath.strokes[0].points.max() == pytest.approx(25 + side_mm)
 
 
@@ -96,7 +126,20 @@ def test_a_drawing_without_strokes_is_refused() -> None:
 
 def test_points_closer_to_a_line_than_the_error_are_left_out() -> None:
     wavy = [(float(x), 50 + 0.03 * (x % 2)) for x in range(101)]
-    assert len(plan_toolpath(drawing(wavy), error_mm=0.05).strokes[0].points) == 2
+    assert len(plan_toolpath(drawing(wavy), precision=Precision(error_mm=0.05)).strokes[0].points) == 2
+
+
+def test_the_error_is_never_more_than_its_share_of_a_pixel() -> None:
+    wavy = [(float(x), 50 + 0.03 * (x % 2)) for x in range(101)]
+    assert len(plan_toolpath(drawing(wavy), precision=Precision(error_px=0.02)).strokes[0].points) > 50
+
+
+def test_a_crossing_stays_exactly_on_both_strokes() -> None:
+    bent, across = [(0.0, 0.0), (50.0, 0.05), (100.0, 0.0)], [(50.0, -20.0), (50.0, 0.05), (50.0, 20.0)]
+    toolpath = plan_toolpath(drawing(bent, across))
+    one, other = ({tuple(point) for point in stroke.points.tolist()} for stroke in toolpath.strokes)
+    assert len(one & other) == 1
+    assert len(plan_toolpath(drawing(bent)).strokes[0].points) == 2
 
 
 def test_start_and_park_position_are_told_on() -> None:

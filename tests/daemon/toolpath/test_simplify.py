@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from daemon.shapes import Points
-from daemon.toolpath.simplify import simplify
+from daemon.toolpath.simplify import shared_points, simplify
 from tests.daemon.toolpath.strokes import polylines
 
 errors = st.floats(0, 20)
@@ -42,6 +42,33 @@ def test_the_result_is_never_longer_and_repeats_no_point(points: Points, error: 
     lengths = [np.linalg.norm(np.diff(some, axis=0), axis=1) for some in (points, result)]
     assert lengths[1].sum() <= lengths[0].sum() + 1e-9
     assert (lengths[1] > 0).all()
+
+
+@given(polylines(most=40), errors, st.floats(0.1, 20))
+def test_segments_are_as_long_as_the_machine_resolves_but_for_the_only_one(
+    points: Points, error: float, shortest: float
+) -> None:
+    result = simplify(points, error=error, shortest=shortest)
+    assert (result[[0, -1]] == points[[0, -1]]).all()
+    assert len(result) <= 2 or np.linalg.norm(np.diff(result, axis=0), axis=1).min() >= shortest
+    assert distance(points, result).max() <= error + shortest + 1e-6
+
+
+@given(polylines(most=20), st.integers(0, 19), errors, st.floats(0.1, 20))
+def test_a_point_that_must_stay_stays(points: Points, index: int, error: float, shortest: float) -> None:
+    kept = np.arange(len(points)) == min(index, len(points) - 1)
+    result = simplify(points, error=error, kept=kept, shortest=shortest)
+    assert (result == points[kept]).all(axis=1).any()
+
+
+def test_shared_points_are_those_that_occur_twice() -> None:
+    one, other = np.array([[0.0, 0], [5, 5], [9, 9]]), np.array([[5.0, 5], [7, 7], [0, 1]])
+    loop = np.array([[3.0, 3], [4, 4], [3, 3]])
+    assert [mask.tolist() for mask in shared_points([one, other, loop])] == [
+        [False, True, False],
+        [True, False, False],
+        [True, False, True],
+    ]
 
 
 def test_a_straight_line_keeps_its_two_ends() -> None:

@@ -1,0 +1,27 @@
+"""Where the box of a sheet lies in machine mm, and how far the machine reaches from its origin."""
+
+from __future__ import annotations
+
+from daemon.config import Machine, Sheet
+
+
+def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
+    """The box's lower left corner in machine mm. The sheet's corner is where the pen stands or, homed, at origin_mm."""
+    corner_mm = machine.origin_mm if machine.origin == "homed" else (0.0, 0.0)
+    x_mm, y_mm = sheet.box_origin_mm
+    if sheet.corner.endswith("right"):
+        x_mm = -x_mm - sheet.box_mm[0]
+    if sheet.corner.startswith("upper"):
+        y_mm = -y_mm - sheet.box_mm[1]
+    return corner_mm[0] + x_mm, corner_mm[1] + y_mm
+
+
+def reach_low_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
+    """The smallest x and y the machine goes to: from a pen put on the sheet's corner the reach runs into the sheet."""
+    if machine.origin == "homed":
+        return 0.0, 0.0
+    width_mm, height_mm = machine.reach_mm
+    return (
+        -width_mm if sheet.corner.endswith("right") else 0.0,
+        -height_mm if sheet.corner.startswith("upper") else 0.0,
+    )
