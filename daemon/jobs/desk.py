@@ -61,7 +61,8 @@ class Desk:
         for job in self.journal.jobs(State.DRAWING):
             self.step(job.id, State.INTERRUPTED, _INTERRUPTED)
             self.hold(f"job {job.id} was interrupted: look at the machine and the sheet")
-        self.show(held=self.held)
+        if self.held:
+            self._show_held()
 
     @property
     def held(self) -> str:
@@ -186,9 +187,13 @@ class Desk:
             self.journal.hold(words)
         except DiskTrouble as error:
             self.trouble(str(error))
-        self.say(f"no job starts until a person says `linedrawd go`: {words}", level=logging.WARNING)
-        self.show(state="held", words=words, held=words)
+        self.say(self._show_held(), level=logging.WARNING)
         self._notify()
+
+    def _show_held(self) -> str:
+        words = f"no job starts until a person says `linedrawd go`: {self.held}"
+        self.show(state="held", words=words, held=self.held)
+        return words
 
     def go(self) -> None:
         self.journal.go()

@@ -22,6 +22,9 @@ NO_MACHINE_RETRY_S = 3.0
 FAULT_RETRY_S = 30.0
 """Opening a port resets many controllers: one that answers, but is not ready, is left alone longer."""
 
+_ENDED = "linedrawd ended in the middle of a drawing: set the pen to its origin and put in a new sheet"
+"""The next one opens the port anew, which makes an origin of wherever the pen stands."""
+
 _STATES = {Verdict.FINISHED: State.DONE, Verdict.REJECTED: State.FAILED}
 """Every other verdict leaves the job interrupted."""
 _PORT_STAYS_OPEN = {Verdict.FINISHED, Verdict.STOPPED, Verdict.REJECTED}
@@ -119,10 +122,9 @@ class Drawing:
         self._desk.show(state="idle", words="", port=self._machine.name, firmware=ready.firmware)
 
     def _lost(self, error: NoMachine | MachineFault) -> None:
-        self.close()
+        self._give_back()
         self.missing = error
         self._retry_at_s = self._now() + (NO_MACHINE_RETRY_S if isinstance(error, NoMachine) else FAULT_RETRY_S)
-        self._desk.show(port="", firmware="")
         if str(error) != self._told:
             self._told = str(error)
             self._desk.trouble(self._told)
@@ -166,17 +168,25 @@ class Drawing:
 
     def _record(self, job: Job, program: Program, ended: Ended, *, real_s: float) -> None:
         assert self._machine is not None
-        ink = self._machine.take_ink()
+        port, ink = self._machine.name, self._machine.take_ink()
         if not (ended.verdict in _PORT_STAYS_OPEN and ended.position_known):
-            self.close()
+            self._give_back()
         self._report(job, ink, real_s)
         cancelled = self._desk.is_cancelled(job.id) and ended.verdict is Verdict.STOPPED
         state = State.CANCELLED if cancelled else _STATES.get(ended.verdict, State.INTERRUPTED)
-        if state is State.DONE:
+        if not self._desk.held:
+            self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=cancelled or state is State.DONE)
+        self._desk.step_at_last(job.id, state, _words(ended, program.strokes), real_s=real_s, port=port)
+
+    def _go_on_or_hold(self, why: str, *, on: bool) -> None:
+        if on:
             self._desk.show(state="idle", words="")
-        elif not (cancelled or self._desk.ending or self._desk.held):
-            self._desk.hold(ended.why)
-        self._desk.step_at_last(job.id, state, _words(ended, program.strokes), real_s=real_s)
+        else:
+            self._desk.hold(why)
+
+    def _give_back(self) -> None:
+        self.close()
+        self._desk.show(port="", firmware="")
 
     def _report(self, job: Job, ink: InkMm | None, real_s: float) -> None:
         """The seconds into report.json, the ink beside it, and have it measured. A job does not fail for its report."""
@@ -185,6 +195,7 @@ class Drawing:
             _add_to_report(folder / "report.json", real_s)
             if ink is not None:
                 write_durably(folder / "ink.json", json.dumps({"strokes": ink}).encode())
+            if ink is not None and not self._desk.ending:
                 self._measure(folder)
         except (LinedrawError, ValueError) as error:
             self._desk.trouble(f"the report is not complete: {error}", job=job.id)

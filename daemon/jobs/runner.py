@@ -77,5 +77,7 @@ class Runner:
                 # A mistake of ours must not start anything: what the machine does is no longer known.
                 self._desk.say(traceback.format_exc(), level=logging.ERROR)
                 self._drawing.stop()
-                self._desk.hold(f"a mistake in linedrawd ({error!r}): please report it with linedrawd.log")
+                words = f"a mistake in linedrawd ({error!r}): please report it with linedrawd.log"
+                self._desk.trouble(words)
+                self._desk.hold(words)
                 self._desk.wait(DISK_RETRY_S)

@@ -20,6 +20,23 @@ def test_a_fault_is_still_held_after_a_restart(bench: Bench) -> None:
     after.drawing.turn()
     assert after.states() == ["interrupted", "planned"]
     assert after.machine.opened == 0
+    assert after.shown["state"] == "held"
+    assert after.shown["words"] == "no job starts until a person says `linedrawd go`: silent at line 7: look at it"
+    after.journal.close()
+
+
+def test_an_end_in_mid_drawing_is_held_after_a_restart_and_is_not_measured(bench: Bench) -> None:
+    bench.machine.endings = [Ended(Verdict.STOPPED, 1, 2, True, True, "stopped")]
+    bench.machine.ink = [[(1.0, 1.0), (9.0, 1.0)]]
+    bench.machine.while_drawing = bench.desk.end
+    bench.planned("a.png")
+    bench.planned("b.png")
+    bench.drawing.turn()
+    assert "ink_strokes" not in (bench.desk.folders.path("000001-a") / "report.json").read_text()
+    after = bench.restarted()
+    after.drawing.turn()
+    assert after.states() == ["interrupted", "planned"]
+    assert after.desk.held.startswith("linedrawd ended in the middle of a drawing")
     after.journal.close()
 
 
@@ -49,6 +66,7 @@ def test_a_cancelled_drawing_is_stopped_and_the_next_one_starts(bench: Bench) ->
     bench.machine.endings = [Ended(Verdict.STOPPED, 1, 2, True, True, "stopped")]
     bench.machine.while_drawing = lambda: print(bench.runner.cancel(first))
     bench.drawing.turn()
+    assert bench.shown["state"] == "idle"
     bench.machine.while_drawing = lambda: None
     bench.drawing.turn()
     assert bench.states() == ["cancelled", "done"]

@@ -88,6 +88,8 @@ def test_a_fault_interrupts_the_job_and_no_further_one_starts_until_a_person_say
     assert "1 are certainly drawn, none after the first 2 is touched; the pen may be down" in bench.words(0)
     assert (bench.machine.drawn, bench.machine.opened, bench.machine.closed) == (1, 1, 1)
     assert bench.shown["held"] == f"{verdict.value} at line 7: look at it"
+    assert bench.shown["port"] == ""
+    assert bench.said[-1][1]["port"] == "instant"
     bench.runner.go()
     bench.drawing.turn()
     assert bench.states() == ["interrupted", "done"]
@@ -195,6 +197,7 @@ def test_a_mistake_of_ours_holds_everything(bench: Bench) -> None:
 
     bench.runner._turn_on(mistake)
     assert "a mistake in linedrawd (KeyError('a mistake'))" in bench.desk.held
+    assert bench.shown["last_error"] == bench.desk.held
     assert bench.machine.stops == 0
 
 
