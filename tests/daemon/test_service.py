@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -37,13 +38,13 @@ class Daemon:
 
     def wait_for(self, true: Callable[[list[Job]], object]) -> list[Job]:
         """Sleeps on the desk's own bell, at most half a minute."""
-        desk = self.parts.desk
-        for _ in range(1000):
+        desk, until = self.parts.desk, time.monotonic() + 30.0
+        while True:
             seen, jobs = desk.changes, desk.journal.jobs()
             if true(jobs):
                 return jobs
-            desk.wait(30.0, since=seen)
-        raise AssertionError(desk.journal.jobs())
+            assert time.monotonic() < until, (jobs, desk.held)
+            desk.wait(max(0.0, until - time.monotonic()), since=seen)
 
     def order(self, order: str, job: str = "") -> str:
         return give_order(self.settings.paths.control, Order.model_validate({"order": order, "job": job}))
