@@ -14,7 +14,7 @@ RESTARTED = (
     "set the pen to its origin and put in a new sheet"
 )
 ALARMED = f"the controller reports an alarm and locked itself: {codes.ALARMS[1].remedy}"
-STOPPED = "stopped on request, the position is kept: put in a new sheet, or continue with the first stroke not drawn"
+STOPPED = "stopped on request, the position is kept: put in a new sheet before the next drawing"
 STOPPED_HOMING = "stopped on request while homing, so the position is unknown: home the machine before the next drawing"
 FINISHED = "every line was drawn"
 UNPLUGGED = "the port is gone: plug the machine in again, set the pen to its origin and put in a new sheet"
