@@ -10,13 +10,15 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
+PEERS := .venv-peers
+PEER_PINS := tests/benchmarks/fidelity/peers/requirements.txt
 PINS := pyproject.toml constraints.txt
 CODE := daemon firmware_protocol training tests
 
 # onnxruntime reports home from its first import on unless this is set before it.
 export ORT_DISABLE_TELEMETRY := 1
 
-.PHONY: help demo test test-training test-system check format bench bench-fidelity clean
+.PHONY: help demo test test-training test-system check format bench bench-fidelity peers clean
 
 help: ## What there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -48,7 +50,10 @@ bench: $(VENV)/runtime ## The figures: seconds of each stage, lines a second, me
 	@$(BIN)/python -m tests.benchmarks
 
 bench-fidelity: $(VENV)/runtime ## How close the strokes come, against the bars; QUICKDRAW=FILE adds real sketches
-	@$(BIN)/python -m tests.benchmarks.fidelity $(if $(QUICKDRAW),--quickdraw '$(QUICKDRAW)')
+	@$(BIN)/python -m tests.benchmarks.fidelity $(if $(QUICKDRAW),--quickdraw '$(QUICKDRAW)') \
+		$(if $(wildcard $(PEERS)/made),--peers)
+
+peers: $(PEERS)/made ## Other people's tracers in .venv-peers, for bench-fidelity to compare with
 
 clean: ## Remove what was made, also .venv and demo
 	rm -rf $(VENV) demo build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
@@ -60,6 +65,11 @@ $(VENV)/runtime: $(PINS) | $(VENV)/made
 
 $(VENV)/test $(VENV)/check $(VENV)/training: $(VENV)/%: $(VENV)/runtime
 	$(PIP) --editable '.[$*]'
+	@touch $@
+
+$(PEERS)/made: $(PEER_PINS)
+	$(PYTHON) -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip --disable-pip-version-check install --quiet --requirement $(PEER_PINS)
 	@touch $@
 
 $(VENV)/made:

@@ -13,26 +13,30 @@ from typing import TYPE_CHECKING
 os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "ORT_DISABLE_TELEMETRY": "1"}
 
 if TYPE_CHECKING:
+    from daemon.shapes import Points
     from tests.benchmarks.fidelity.bars import Scored
     from tests.benchmarks.fidelity.known import Known
 
-SETS = ("quickdraw", "scribbles", "curves", "technical")
+SETS = ("quickdraw", "scribbles", "curves", "technical", "order")
 
 
 def main() -> None:
     import cv2  # noqa: PLC0415
 
-    from tests.benchmarks.fidelity import table  # noqa: PLC0415
+    from tests.benchmarks.fidelity import table, travel  # noqa: PLC0415
 
     cv2.setNumThreads(1)
     wanted = options()
-    kept: dict[str, list[dict[str, object]]] = {}
+    kept: dict[str, object] = {}
     for name, (head, drawings) in chosen(wanted).items():
-        scores = scored(drawings, wanted.worst, wanted.folder / name)
-        table.show(name, head, {table.OURS: scores})
-        kept[name] = [asdict(score) for score in scores]
+        tools = {table.OURS: scored(drawings, wanted.worst, wanted.folder / name)}
+        tools |= beside(drawings) if wanted.peers else {}
+        table.show(name, head, tools)
+        kept[name] = {tool: [asdict(score) for score in scores] for tool, scores in tools.items()}
+    if "order" in (wanted.set or SETS):
+        kept["order"] = travel.show(wanted.quickdraw)
     if wanted.json:
-        wanted.json.write_text(json.dumps(kept, indent=1))
+        wanted.json.write_text(json.dumps(kept, indent=1, default=asdict))
 
 
 def options() -> argparse.Namespace:
@@ -40,6 +44,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--quickdraw", type=Path, metavar="FILE", help="ndjson of Quick, Draw!, plain or .gz")
     parser.add_argument("--set", choices=SETS, action="append", help="only this set (may be given more than once)")
     parser.add_argument("--limit", type=int, default=None, metavar="N", help="only the first N drawings of each set")
+    parser.add_argument("--peers", action="store_true", help="other tracers side by side, needs make peers")
     parser.add_argument("--worst", type=int, default=0, metavar="N", help="explain pictures of the worst N")
     parser.add_argument("--folder", type=Path, default=Path("fidelity"), help="where those pictures go")
     parser.add_argument("--json", type=Path, metavar="FILE", help="every figure of every drawing")
@@ -90,6 +95,31 @@ def scored(drawings: list[Known], worst: int, folder: Path) -> list[Scored]:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / f"{rank:02} {score.name}.png").write_bytes(explained(seen[score.name], score.name))
     return scores
+
+
+def beside(drawings: list[Known]) -> dict[str, list[Scored]]:
+    """The scores of the other tracers on the same drawings, and of their strokes merged and sorted by vpype."""
+    from tests.benchmarks.fidelity import peers  # noqa: PLC0415
+
+    if not peers.installed():
+        print("the other tracers are left out: make peers\n")
+        return {}
+    pictures, found = {known.name: known.grey for known in drawings}, {}
+    for tool in peers.TRACERS:
+        traced = peers.traced(tool, pictures)
+        merged = peers.vpype({name: lines for name, (lines, _) in traced.items()}, tolerance_px=1.5)
+        found[tool] = [compared(known, *traced[known.name]) for known in drawings]
+        found[f"{tool} + vpype"] = [
+            compared(known, merged[known.name]["linesort"], traced[known.name][1]) for known in drawings
+        ]
+    return found
+
+
+def compared(known: Known, strokes: list[Points], cpu_ms: float) -> Scored:
+    from tests.benchmarks.fidelity.bars import Scored  # noqa: PLC0415
+    from tests.benchmarks.fidelity.measure import measure  # noqa: PLC0415
+
+    return Scored(known.name, measure(known, strokes), cpu_ms)
 
 
 if __name__ == "__main__":

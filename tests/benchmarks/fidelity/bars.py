@@ -50,6 +50,11 @@ def worst_f1(scores: Sequence[Scored]) -> float:
     return float(np.mean(ranked[: max(1, len(ranked) // 20)]))
 
 
+def strokes_together(scores: Sequence[Scored]) -> float:
+    """All strokes of the set by the fewest that can draw it: drawings of few strokes weigh little."""
+    return sum(score.measure.strokes for score in scores) / sum(score.measure.minimum for score in scores)
+
+
 def without_network(scores: Sequence[Scored]) -> float:
     return float(np.median([score.cpu_ms - score.network_cpu_ms for score in scores]))
 
@@ -64,6 +69,7 @@ FIGURES: dict[str, Callable[[Sequence[Scored]], float]] = {
     "ink recalled": mean_of("ink_recall"),
     "length ratio": mean_of("length_ratio"),
     "strokes / minimum": mean_of("stroke_ratio"),
+    "of all together": strokes_together,
     "pen-up, px": mean_of("pen_up_px"),
     "CPU ms, median": lambda scores: float(np.median([score.cpu_ms for score in scores])),
     "without the network": without_network,

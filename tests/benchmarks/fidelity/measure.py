@@ -39,8 +39,10 @@ class Measure:
     length_ratio: float
     """Drawn length by the length of the union of the true lines."""
     stroke_ratio: float
-    """Drawn strokes by the fewest that can draw the true lines."""
+    """strokes by minimum."""
     strokes: int
+    minimum: int
+    """The fewest strokes that can draw the true lines."""
     pen_up_px: float
     """Straight ways between the strokes as they follow each other, from (0, 0)."""
 
@@ -62,6 +64,7 @@ def measure(known: Known, drawn: Sequence[Points]) -> Measure:
         length_ratio=length_px(drawn) / max(fewest.union_px, 1e-9),
         stroke_ratio=len(drawn) / fewest.fewest_strokes,
         strokes=len(drawn),
+        minimum=fewest.fewest_strokes,
         pen_up_px=pen_up_px(drawn),
     )
 

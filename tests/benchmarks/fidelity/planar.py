@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import cv2
 import numpy as np
 
 from daemon.shapes import Edge, LineGraph, Points
-from daemon.toolpath.simplify import simplify
 from training.render import crossings
 
 GRID_PX = 0.5
 _BEND_PX = 0.1
+_SHARED_PX = 1.0
 _CHUNK = 256
 
 Node: TypeAlias = tuple[int, int]
@@ -33,22 +35,22 @@ def planar(strokes: Sequence[Points]) -> Planar:
     """Every end, bend and crossing is rounded to a grid of 0.5 px; a line bends to each such place that it passes.
 
     Points that lie within 0.1 px of the line without them are no bends: a smooth curve is not one bend after another.
+    Lines that share no more than 1 px meet in one place there: rounding has drawn out their crossing.
     """
     passed = list(_passes(strokes))
     times = Counter(pair for pair, _ in passed if pair[0] != pair[1])
     union_px = sum(length / max(1, times[pair]) for pair, length in passed)
-    alone = {pair[0] for pair, _ in passed}
-    return Planar(_fewest(list(times), alone), float(union_px))
+    return Planar(_fewest(*_lines([pair for pair, _ in passed])), float(union_px))
 
 
 def graph(strokes: Sequence[Points]) -> LineGraph:
     """The same as a graph whose edges run from junction to junction or end; a dot is an edge of one point."""
-    passed = [pair for pair, _ in _passes(strokes)]
+    pairs, places = _lines([pair for pair, _ in _passes(strokes)])
     ways: dict[Node, list[Node]] = {}
-    for p, q in dict.fromkeys(pair for pair in passed if pair[0] != pair[1]):
+    for p, q in pairs:
         ways.setdefault(p, []).append(q)
         ways.setdefault(q, []).append(p)
-    walks = [[p] for p in dict.fromkeys(p for p, _ in passed) if p not in ways]
+    walks = [[place] for place in places if place not in ways]
     junctions = {node for node, to in ways.items() if len(to) != 2}
     # Junctions and ends first; what is left then are closed curves without any.
     for start in sorted(ways, key=lambda node: node not in junctions):
@@ -57,6 +59,24 @@ def graph(strokes: Sequence[Points]) -> LineGraph:
     number = {node: i for i, node in enumerate(dict.fromkeys(end for walk in walks for end in (walk[0], walk[-1])))}
     edges = tuple(Edge(number[w[0]], number[w[-1]], np.array(w, float) * GRID_PX, 1.0) for w in walks)
     return LineGraph(np.array(list(number), float).reshape(-1, 2) * GRID_PX, edges)
+
+
+def _lines(passed: list[_Pair]) -> tuple[list[_Pair], list[Node]]:
+    """Each bit of line once, and all places; the ends of a short bit that lines share are one place."""
+    times = Counter(passed)
+    root: dict[Node, Node] = {node: node for pair in times for node in pair}
+    for (p, q), count in times.items():
+        if count > 1 and math.dist(p, q) * GRID_PX <= _SHARED_PX:
+            root[_root(root, p)] = _root(root, q)
+    moved = [(_root(root, p), _root(root, q)) for p, q in times]
+    return [pair for pair in moved if pair[0] != pair[1]], list(dict.fromkeys(p for p, _ in moved))
+
+
+def _root(root: dict[Node, Node], node: Node) -> Node:
+    while root[node] != node:
+        root[node] = root[root[node]]
+        node = root[node]
+    return node
 
 
 def _walk(ways: dict[Node, list[Node]], start: Node, junctions: set[Node]) -> list[Node]:
@@ -72,7 +92,7 @@ def _walk(ways: dict[Node, list[Node]], start: Node, junctions: set[Node]) -> li
 
 def _passes(strokes: Sequence[Points]) -> Iterator[tuple[_Pair, float]]:
     """Between which two places each bit of line runs, and how long the bit is in truth, in px."""
-    strokes = [simplify(s, error=_BEND_PX) for s in strokes]
+    strokes = [_bends(s) for s in strokes]
     lines = [s for s in strokes if len(s) > 1]
     met = crossings(lines) if lines else np.empty((0, 2))
     hot = np.unique(np.rint(np.concatenate([*strokes, met]) / GRID_PX), axis=0)
@@ -84,6 +104,14 @@ def _passes(strokes: Sequence[Points]) -> Iterator[tuple[_Pair, float]]:
     starts, ends = np.concatenate([s[:-1] for s in lines]), np.concatenate([s[1:] for s in lines])
     for first in range(0, len(starts), _CHUNK):
         yield from _along(starts[first : first + _CHUNK] / GRID_PX, ends[first : first + _CHUNK] / GRID_PX, hot)
+
+
+def _bends(stroke: Points) -> Points:
+    if len(stroke) == 1:
+        return stroke
+    kept = cv2.approxPolyDP(stroke.astype(np.float32)[:, None], _BEND_PX, False)[:, 0].astype(np.float64)
+    # OpenCV leaves out the last point of a closed curve.
+    return np.concatenate([kept, stroke[-1:]])
 
 
 def _along(a: Points, b: Points, hot: Points) -> Iterator[tuple[_Pair, float]]:
@@ -127,17 +155,10 @@ def _node(place: Points) -> Node:
     return int(place[0]), int(place[1])
 
 
-def _fewest(pairs: list[_Pair], alone: set[Node]) -> int:
-    root = {node: node for pair in pairs for node in pair} | {node: node for node in alone}
-
-    def find(node: Node) -> Node:
-        while root[node] != node:
-            root[node] = root[root[node]]
-            node = root[node]
-        return node
-
+def _fewest(pairs: list[_Pair], places: list[Node]) -> int:
+    root = {node: node for node in (*places, *(node for pair in pairs for node in pair))}
     for p, q in pairs:
-        root[find(p)] = find(q)
+        root[_root(root, p)] = _root(root, q)
     degree = Counter(node for pair in pairs for node in pair)
-    odd = Counter(find(node) for node, count in degree.items() if count % 2)
-    return sum(max(1, odd[component] // 2) for component in {find(node) for node in root})
+    odd = Counter(_root(root, node) for node, count in degree.items() if count % 2)
+    return sum(max(1, odd[component] // 2) for component in {_root(root, node) for node in root})

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from tests.benchmarks.fidelity.bars import BARS, FIGURES, Scored
 
 OURS = "linedrawd"
-_NAME, _FIGURE = 22, 17
+_NAME, _FIGURE = 21, 19
 
 
 def show(name: str, head: str, tools: Mapping[str, Sequence[Scored]]) -> None:
