@@ -166,11 +166,12 @@ class Machine(Section):
         return self
 
     def check_streamable(self) -> None:
-        """Raises SettingsError when its programs are files for another machine: this one would press the pen down."""
-        if self.dialect == "paper" and not (isinstance(self.pen, ZPenSettings) and self.pen.up_mm == _PAPER_UP_MM):
-            raise SettingsError(
-                "dialect = 'paper' lifts to Z-5: say pen.up_mm = -5 if that is up here, or dialect = 'grbl'"
-            )
+        """Raises SettingsError when its programs are files for another machine: they press the pen down or shrink."""
+        paper, pen = self.dialect == "paper", self.pen
+        if paper and not (isinstance(pen, ZPenSettings) and pen.up_mm == _PAPER_UP_MM):
+            raise SettingsError("dialect = 'paper' lifts to Z-5: say pen.up_mm = -5 if that is up, or dialect = 'grbl'")
+        if paper and self.units != "mm":
+            raise SettingsError(f"units = '{self.units}' is for files, a GRBL counts in mm: say units = 'mm'")
 
     @property
     def simulated(self) -> bool:

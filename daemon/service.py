@@ -99,7 +99,7 @@ def _opened(machine: Machine, hear: Callable[[Event], None]) -> OpenMachine:
 def _touches(machine: Machine) -> PenRule:
     pen = machine.pen
     if isinstance(pen, ZPenSettings):
-        return PenRule(down_at_mm=pen.down_mm)
+        return PenRule(down_at_mm=pen.down_mm, up_is_minus=pen.up_mm < pen.down_mm)
     return PenRule(down_s=pen.down_s, up_s=pen.up_s)
 
 

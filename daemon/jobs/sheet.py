@@ -18,9 +18,11 @@ def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
 
 def reach_low_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
     """The smallest x and y the machine goes to: from a pen put on the sheet's corner the reach runs into the sheet."""
-    if machine.origin == "homed":
-        return 0.0, 0.0
     width_mm, height_mm = machine.reach_mm
+    if machine.origin == "homed":
+        # Homed, GRBL counts from minus its travel to nought, unless it has been given a work offset.
+        x_mm, y_mm = machine.origin_mm
+        return -width_mm if x_mm < 0 else 0.0, -height_mm if y_mm < 0 else 0.0
     return (
         -width_mm if sheet.corner.endswith("right") else 0.0,
         -height_mm if sheet.corner.startswith("upper") else 0.0,

@@ -14,7 +14,7 @@ from firmware_protocol.grbl.simulator import GrblSimulator
 
 _AT: Mapping[str, type[Timed]] = {"hang": Hang, "brownout": BrownOut, "limit": HardLimit, "unplug": Unplug}
 _NUMBERED: Mapping[str, type[DropByte | FlipByte | LoseOk]] = {"drop": DropByte, "flip": FlipByte, "lose_ok": LoseOk}
-_OTHER = ("speed", "boot_s", "pen_z", "pen_s")
+_OTHER = ("speed", "boot_s", "pen_z", "pen_s", "switches")
 _EXAMPLE = "sim://grbl?speed=1&pen_z=0&110=3000&hang=2.5"
 
 
@@ -107,9 +107,10 @@ def simulator_of(
 ) -> GrblSimulator:
     """The simulated machine that a URL such as `sim://grbl?pen_z=0&110=3000&hang=2.5` describes.
 
-    The query may hold `speed`, `boot_s`, the pen (`pen_z` height in mm, or `pen_s=DOWN:UP` values of S), `$` settings
-    by number and faults: `hang`, `brownout`, `limit` and `unplug` in seconds, or `@N` for behind the N-th ok; `drop`,
-    `flip` and `lose_ok` by number from 0. What it says goes before the arguments.
+    The query may hold `speed`, `boot_s`, the pen (`pen_z` height in mm, or `pen_s=DOWN:UP` values of S), the homing
+    `switches=X:Y:Z` in mm from where the pen stands first, `$` settings by number, and faults: `hang`, `brownout`,
+    `limit` and `unplug` in seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0.
+    What it says goes before the arguments.
     Raises SettingsError for anything else.
     """
     parts = urlsplit(url)
@@ -125,6 +126,7 @@ def simulator_of(
             faults=(*faults, *asked),
             pen=_pen(options) or pen,
             boot_s=float(options.get("boot_s", 0)),
+            switches_mm=_switches(options["switches"]) if "switches" in options else None,
         )
     except ValueError as error:
         raise SettingsError(f"{url}: {error}: write for example {_EXAMPLE}") from error
@@ -138,6 +140,11 @@ def _fault(key: str, value: str) -> Fault:
     if value.startswith("@"):
         return _AT[key](after_oks=int(value[1:]))
     return _AT[key](at_s=float(value))
+
+
+def _switches(text: str) -> tuple[float, float, float]:
+    x_mm, y_mm, z_mm = map(float, text.split(":"))
+    return x_mm, y_mm, z_mm
 
 
 def _pen(options: Mapping[str, str]) -> PenRule | None:

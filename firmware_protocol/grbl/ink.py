@@ -15,9 +15,13 @@ _SAME_MM = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class PenRule:
-    """When the pen touches the sheet: at or below a height; with a servo when S is nearer `down_s` than `up_s`."""
+    """When the pen touches the sheet: at or below a height; with a servo when S is nearer `down_s` than `up_s`.
+
+    up_is_minus: the height is counted downwards, so the pen touches at or above `down_at_mm`.
+    """
 
     down_at_mm: float = 0.0
+    up_is_minus: bool = False
     down_s: float | None = None
     up_s: float = 0.0
 
@@ -29,8 +33,9 @@ class PenRule:
         """The part of a straight move, as fractions, on which the pen is down; None: nowhere."""
         if self.down_s is not None:
             return (0.0, 1.0) if self.servo_down(speed) else None
-        limit = self.down_at_mm + _SAME_MM
-        from_mm, to_mm = start[2], end[2]
+        up = -1.0 if self.up_is_minus else 1.0
+        limit = up * self.down_at_mm + _SAME_MM
+        from_mm, to_mm = up * start[2], up * end[2]
         if from_mm <= limit:
             return 0.0, 1.0 if to_mm <= limit else (limit - from_mm) / (to_mm - from_mm)
         return None if to_mm > limit else ((from_mm - limit) / (from_mm - to_mm), 1.0)

@@ -86,6 +86,8 @@ def test_the_paper_dialect_is_streamed_only_where_minus_five_is_up(tmp_path: Pat
         settings("[machines.a]\ndialect = 'paper'", tmp_path).machines["a"].check_streamable()
     text = "[machines.a]\ndialect = 'paper'\npen = {kind = 'z', up_mm = -5}"
     settings(text, tmp_path).machines["a"].check_streamable()
+    with pytest.raises(SettingsError, match="units = 'cm' is for files"):
+        settings(text + "\nunits = 'cm'", tmp_path).machines["a"].check_streamable()
     settings("[machines.a]", tmp_path).machines["a"].check_streamable()
 
 

@@ -31,3 +31,8 @@ def test_homed_the_corner_lies_where_the_settings_say_and_the_reach_begins_at_no
     machine = Machine(origin="homed", origin_mm=(150, 5))
     assert box_origin_mm(sheet, machine) == (80, 25)
     assert reach_low_mm(sheet, machine) == (0, 0)
+
+
+def test_homed_the_reach_ends_at_nought_where_the_corner_lies_below_it() -> None:
+    machine = Machine(origin="homed", origin_mm=(-190, -90), reach_mm=(200, 100))
+    assert reach_low_mm(Sheet(), machine) == (-200, -100)

@@ -95,9 +95,30 @@ def test_settings_pen_and_faults_come_from_the_url_or_the_arguments() -> None:
     assert transport.ink == [[(0.0, 0.0), (1.0, 0.0)]]
 
 
+def test_homing_finds_the_switches_of_the_url() -> None:
+    transport = open_simulated("sim://grbl?22=1&switches=-200:3:0&23=1")
+    heard(transport, 0.1)
+    transport.write(b"$H\n")
+    assert heard(transport, 120.0).endswith(b"ok\r\n")
+    assert transport.simulator.position_mm == pytest.approx((-199.0, 2.0, -1.0))
+    transport.write(b"?")
+    assert b"MPos:-199.000,-1.000,-1.000" in heard(transport, 121.0)
+
+
 @pytest.mark.parametrize(
     "query",
-    ["", "grbl/x", "emco", "grbl?sped=1", "grbl?999=1", "grbl?hang=x", "grbl?hang=@x", "grbl?speed=x", "grbl?pen_s=x"],
+    [
+        "",
+        "grbl/x",
+        "emco",
+        "grbl?sped=1",
+        "grbl?999=1",
+        "grbl?hang=x",
+        "grbl?hang=@x",
+        "grbl?speed=x",
+        "grbl?pen_s=x",
+        "grbl?switches=1:2",
+    ],
 )
 def test_a_url_that_says_nothing_is_refused_with_an_example(query: str) -> None:
     with pytest.raises(SettingsError, match="write"):

@@ -34,6 +34,13 @@ def test_the_pen_touches_at_the_height_of_the_rule_on_its_way_down() -> None:
     assert [x for x, _ in line] == pytest.approx([2.0, 4.0, 6.0])
 
 
+def test_up_may_be_minus() -> None:
+    conversation = talk(pen=PenRule(up_is_minus=True))
+    conversation.stream([line.replace("Z5", "Z-5") for line in SQUARE])
+    conversation.settle()
+    assert conversation.sim.ink == [CORNERS]
+
+
 def test_a_pen_that_goes_down_and_up_makes_a_dot() -> None:
     conversation = talk()
     conversation.stream(["G0Z5", "G0X3Y4", "G1Z0F900", "G0Z5"])
