@@ -214,13 +214,3 @@ def test_the_daemons_own_process_loads_no_network_no_vision_and_no_arrays() -> N
     program = "import sys, daemon.cli.__main__; print({'onnxruntime', 'cv2', 'numpy', 'torch'} & set(sys.modules))"
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout == "set()\n"
-
-
-def test_a_run_leaves_no_file_outside_its_folders(tmp_path: Path) -> None:
-    with running(settings_of(tmp_path)) as daemon:
-        daemon.drop("a.png")
-        daemon.wait_for(ended)
-    assert {path.name for path in tmp_path.iterdir()} == {"linedrawd.toml", "state"}
-    assert {path.name for path in (tmp_path / "state").iterdir()} == {
-        "inbox", "jobs", "log", "run", "lock", "journal.sqlite",
-    }  # fmt: skip
