@@ -1,0 +1,76 @@
+"""The real way of a picture through all rooms: what lies in its folder afterwards, and what a bad one leaves."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from daemon.config import Options, Settings, load_settings
+from daemon.errors import NothingToDraw
+from daemon.jobs.planner import measure_ink, plan_picture
+from daemon.toolpath.place import place
+
+MARKER = Path(__file__).parents[2] / "drawings" / "thick_marker.jpg"
+"""So thick that the page is another size than the picture."""
+
+
+@pytest.fixture(scope="module")
+def settings() -> Settings:
+    return load_settings(Options(device="sim"), environment={"HOME": "/nonexistent"})
+
+
+@pytest.fixture(scope="module")
+def planned(settings: Settings, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("planned")
+    (folder / "source.jpg").write_bytes(MARKER.read_bytes())
+    plan_picture(folder / "source.jpg", folder, settings, settings.machine_name)
+    return folder
+
+
+def read(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(path.read_text())
+    return found
+
+
+def test_a_planned_folder_is_complete(planned: Path) -> None:
+    assert {path.name for path in planned.iterdir()} >= {
+        "source.jpg", "strokes.json", "drawing.svg", "program.gcode", "preview.png", "explain.png", "report.json",
+    }  # fmt: skip
+
+
+def test_the_strokes_run_on_the_ink_of_the_given_picture(planned: Path) -> None:
+    drawn = read(planned / "strokes.json")
+    ink = np.asarray(cv2.imread(str(MARKER), cv2.IMREAD_GRAYSCALE)) < 128
+    assert set(drawn) == {"width_px", "height_px", "px_per_mm", "strokes"}
+    assert (drawn["height_px"], drawn["width_px"]) == ink.shape
+    away_px = cv2.distanceTransform((~ink).astype(np.uint8), cv2.DIST_L2, 5)
+    x, y = np.round(np.concatenate(drawn["strokes"])).astype(int).T
+    assert away_px[y, x].max() < 2.0
+
+
+@pytest.mark.parametrize(("shift_mm", "least", "most"), [(0.0, 0.98, 1.0), (3.0, 0.0, 0.5)])
+def test_executed_ink_is_compared_with_the_given_picture(
+    planned: Path, settings: Settings, shift_mm: float, least: float, most: float
+) -> None:
+    from_px = np.array(read(planned / "report.json")["from_px"])
+    ink = [place(np.array(stroke), from_px) + shift_mm for stroke in read(planned / "strokes.json")["strokes"]]
+    (planned / "ink.json").write_text(json.dumps({"strokes": [line.tolist() for line in ink]}))
+    measure_ink(planned, settings, settings.machine_name)
+    report = read(planned / "report.json")
+    assert report["fidelity_of"] == "executed"
+    assert least <= report["fidelity"]["f1"] <= most
+
+
+@pytest.mark.parametrize("level", [0, 255])
+def test_a_page_that_is_black_or_white_all_over_fails_with_a_sentence_and_leaves_no_program(
+    settings: Settings, tmp_path: Path, level: int
+) -> None:
+    cv2.imwrite(str(tmp_path / "source.png"), np.full((400, 300), level, np.uint8))
+    with pytest.raises(NothingToDraw, match="300 x 400 px holds no line to draw: give a drawing"):
+        plan_picture(tmp_path / "source.png", tmp_path, settings, settings.machine_name)
+    assert [path.name for path in tmp_path.iterdir()] == ["source.png"]
