@@ -18,7 +18,7 @@ CODE := daemon firmware_protocol training tests
 # onnxruntime reports home from its first import on unless this is set before it.
 export ORT_DISABLE_TELEMETRY := 1
 
-.PHONY: help demo test test-training test-system check format bench bench-fidelity peers clean
+.PHONY: help demo test test-training test-system check format bench bench-fidelity generalisation peers clean
 
 help: ## What there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -52,6 +52,9 @@ bench: $(VENV)/runtime ## The figures: seconds of each stage, lines a second, me
 bench-fidelity: $(VENV)/runtime ## How close the strokes come, against the bars; QUICKDRAW=FILE adds real sketches
 	@$(BIN)/python -m tests.benchmarks.fidelity $(if $(QUICKDRAW),--quickdraw '$(QUICKDRAW)') \
 		$(if $(wildcard $(PEERS)/made),--peers)
+
+generalisation: $(VENV)/runtime $(PEERS)/made ## docs/generalisation.png: our own drawings beside a rule-based tracer
+	@$(BIN)/python -m tests.benchmarks.fidelity.generalisation docs/generalisation.png
 
 peers: $(PEERS)/made ## Other people's tracers in .venv-peers, for bench-fidelity to compare with
 

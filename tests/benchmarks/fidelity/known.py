@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,25 +22,21 @@ class Known:
     strokes: Sequence[Points]
     side_px: int
     pen_px: float = PEN_PX
-    fine: Map = field(init=False, repr=False)
-    """The ink, 0..1, on a grid four times as fine as the picture's."""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "fine", fine_ink(self.strokes, self.side_px, self.pen_px))
+    @property
+    def fine(self) -> Map:
+        """The ink, 0..1, on a grid four times as fine as the picture's."""
+        return fine_ink(self.strokes, self.side_px, self.pen_px)
 
     @property
     def ink(self) -> Map:
         """How much of each pixel is inked, (side, side) in 0..1."""
-        return averaged(self.fine)
+        return _averaged(self.fine)
 
     @property
     def grey(self) -> Grey:
         """Black on white."""
         return np.asarray(np.rint(255 * (1 - self.ink)), np.uint8)
-
-    def with_pen_of(self, strokes: Sequence[Points]) -> Map:
-        """The ink of other strokes, drawn with the same pen."""
-        return averaged(fine_ink(strokes, self.side_px, self.pen_px))
 
 
 def fine_ink(strokes: Sequence[Points], side_px: int, pen_px: float) -> Map:
@@ -51,7 +47,7 @@ def fine_ink(strokes: Sequence[Points], side_px: int, pen_px: float) -> Map:
     return np.asarray(np.clip(0.5 + pen_px / 2 * _FINE - away, 0, 1), np.float32)
 
 
-def averaged(fine: Map) -> Map:
+def _averaged(fine: Map) -> Map:
     side = fine.shape[0] // _FINE
     return np.asarray(fine.reshape(side, _FINE, side, _FINE).mean(axis=(1, 3)), np.float32)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -53,14 +53,16 @@ def measure(known: Known, drawn: Sequence[Points]) -> Measure:
     to_true, to_drawn = distances(ours, true), distances(true, ours)
     precision, recall = (float((each <= WITHIN_PX).mean()) if len(each) else 0.0 for each in (to_true, to_drawn))
     fewest = planar(known.strokes)
-    redrawn = known.with_pen_of(drawn)
+    ink = known.ink
+    redrawn = replace(known, strokes=drawn).ink
+    wider = replace(known, strokes=drawn, pen_px=known.pen_px + 2 * _INK_BESIDE_PX).ink
     return Measure(
         chamfer_px=(float(to_true.mean()) + float(to_drawn.mean())) / 2 if len(ours) else math.nan,
         precision=precision,
         recall=recall,
         f1=2 * precision * recall / (precision + recall) if precision + recall else 0.0,
-        iou=float(np.minimum(known.ink, redrawn).sum() / np.maximum(known.ink, redrawn).sum()),
-        ink_recall=_ink_recall(known, drawn),
+        iou=float(np.minimum(ink, redrawn).sum() / np.maximum(ink, redrawn).sum()),
+        ink_recall=float(np.minimum(ink, wider).sum() / ink.sum()),
         length_ratio=length_px(drawn) / max(fewest.union_px, 1e-9),
         stroke_ratio=len(drawn) / fewest.fewest_strokes,
         strokes=len(drawn),
@@ -97,13 +99,9 @@ def pen_up_px(strokes: Sequence[Points], *, back: bool = False) -> float:
 
 def scribbled(known: Known) -> float:
     """Share of the true line where the ink's half width exceeds 1.6 times the pen's: lines that have run together."""
-    ink = np.pad((known.fine > 0.5).astype(np.uint8), 1)
-    fine = known.fine.shape[0] // known.side_px
-    half_px = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1] / fine
+    ink = known.fine
+    fine = ink.shape[0] // known.side_px
+    inked = np.pad((ink > 0.5).astype(np.uint8), 1)
+    half_px = cv2.distanceTransform(inked, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1] / fine
     at = np.rint((samples(known.strokes) + 0.5) * fine - 0.5).astype(int).clip(0, half_px.shape[0] - 1)
     return float((half_px[at[:, 1], at[:, 0]] > 1.6 * known.pen_px / 2).mean())
-
-
-def _ink_recall(known: Known, drawn: Sequence[Points]) -> float:
-    wider = Known(known.name, drawn, known.side_px, known.pen_px + 2 * _INK_BESIDE_PX).ink
-    return float(np.minimum(known.ink, wider).sum() / max(float(known.ink.sum()), 1e-9))

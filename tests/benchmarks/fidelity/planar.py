@@ -118,17 +118,18 @@ def _along(a: Points, b: Points, hot: Points) -> Iterator[tuple[_Pair, float]]:
     """The bits of some segments, all in grid units, cut at the hot places that they pass."""
     enter, leave = _clipped(a, b, hot)
     segment, place = np.nonzero(enter <= leave)
-    middle = (enter + leave)[segment, place] / 2
-    order = np.lexsort((middle, segment))
-    segment, place, middle = segment[order], place[order], middle[order]
+    run = (b - a)[segment]
+    part = np.clip(((hot[place] - a[segment]) * run).sum(axis=1) / np.maximum((run**2).sum(axis=1), 1e-12), 0, 1)
+    order = np.lexsort((part, segment))
+    segment, place, part = segment[order], place[order], part[order]
     follow = np.nonzero(segment[1:] == segment[:-1])[0]
     lengths = np.hypot(*(b - a).T) * GRID_PX
-    # The middles of the first and the last place lie inside the segment: stretched, the bits add up to its length.
+    # The first and the last place may lie a little inside the segment: stretched, the bits add up to its length.
     whole = np.zeros(len(a))
-    np.add.at(whole, segment[follow], np.diff(middle)[follow])
+    np.add.at(whole, segment[follow], np.diff(part)[follow])
     for i in follow.tolist():
         p, q = _node(hot[place[i]]), _node(hot[place[i + 1]])
-        share = (middle[i + 1] - middle[i]) / whole[segment[i]] if whole[segment[i]] else 0.0
+        share = (part[i + 1] - part[i]) / whole[segment[i]] if whole[segment[i]] else 0.0
         yield (min(p, q), max(p, q)), float(lengths[segment[i]] * share)
     single = np.setdiff1d(segment, segment[follow])
     for s in single.tolist():

@@ -1,7 +1,7 @@
 """A short tour through strokes by simulated annealing: JSON list of sets of ends in, their best pen-up lengths out.
 
 Runs in the peers' virtual environment. A set is [[[x, y], [x, y]], ...], begin and end of each stroke; the tour starts
-and ends at (0, 0). 2-opt and Or-opt moves, geometric cooling, the best of three runs (Kirkpatrick et al. 1983).
+and ends at (0, 0). 2-opt and Or-opt moves, geometric cooling, the best of six runs (Kirkpatrick et al. 1983).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 MOVES = 20_000_000
-RUNS = 3
+RUNS = 6
 
 
 @njit(cache=True)

@@ -28,7 +28,7 @@ def sorted_by(pipeline: str, strokes: list[list[list[float]]], tolerance_px: flo
     lines = [np.array([complex(*point) for point in stroke]) for stroke in strokes]
     document = vpype.Document(vpype.LineCollection(lines))
     done = vpype_cli.execute(f"linemerge --tolerance {tolerance_px}px {pipeline}", document)
-    return [np.stack([line.real, line.imag], axis=1).tolist() for line in done.layers[1]]
+    return [np.stack([line.real, line.imag], axis=1).tolist() for line in done.layers.get(1, [])]
 
 
 if __name__ == "__main__":
