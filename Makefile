@@ -58,8 +58,8 @@ generalisation: $(VENV)/runtime $(PEERS)/made ## docs/generalisation.png: our ow
 
 peers: $(PEERS)/made ## Other people's tracers in .venv-peers, for bench-fidelity to compare with
 
-clean: ## Remove what was made, also .venv and demo
-	rm -rf $(VENV) demo build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+clean: ## Remove what was made, also the environments and demo
+	rm -rf $(VENV) $(PEERS) demo fidelity build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find $(CODE) -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/runtime: $(PINS) | $(VENV)/made
