@@ -8,16 +8,31 @@ from typing import Any, Literal
 from daemon.cli.options import add_places, settings_of
 from daemon.control import Order, give_order
 
-_ORDERS: dict[Literal["next", "stop", "go"], str] = {
-    "next": "a new sheet is in: draw the next picture",
-    "stop": "stop the machine now, pen up; no further job starts until `go`",
-    "go": "jobs may start again, after `stop` or a fault of the machine",
+_ORDERS: dict[Literal["next", "stop", "go"], tuple[str, str]] = {
+    "next": (
+        "a new sheet is in: draw the next picture",
+        "linedrawd next             # or put a file NEXT into the inbox",
+    ),
+    "stop": (
+        "stop the machine now, pen up; no further job starts until `go`",
+        "linedrawd stop             # then `linedrawd jobs` says what is on the paper",
+    ),
+    "go": (
+        "jobs may start again, after `stop` or a fault of the machine",
+        "linedrawd go               # when the machine, the pen and the sheet are in order",
+    ),
 }
 
 
 def add_parser(subparsers: Any) -> None:
-    for order, words in _ORDERS.items():
-        parser = subparsers.add_parser(order, help=words, description=words[0].upper() + words[1:] + ".")
+    for order, (words, example) in _ORDERS.items():
+        parser = subparsers.add_parser(
+            order,
+            help=words,
+            description=words[0].upper() + words[1:] + ".",
+            epilog=f"example:\n  {example}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         add_places(parser)
         parser.set_defaults(run=run, order=Order(order=order))
     parser = subparsers.add_parser(

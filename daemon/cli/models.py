@@ -14,7 +14,13 @@ from daemon.errors import LinedrawError
 
 def add_parser(subparsers: Any) -> None:
     words = "the shipped network and its measured accuracy"
-    parser = subparsers.add_parser("models", help=words, description=words[0].upper() + words[1:] + ".")
+    parser = subparsers.add_parser(
+        "models",
+        help=words,
+        description=words[0].upper() + words[1:] + ".",
+        epilog="example:\n  linedrawd models | grep -A 9 figures",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.set_defaults(run=run)
 
 

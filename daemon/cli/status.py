@@ -19,7 +19,13 @@ _NAME = re.compile(r' name=("(?:[^"\\]|\\.)*"|\S+)')
 
 
 def add_parser(subparsers: Any) -> None:
-    parser = subparsers.add_parser("status", help="what the daemon does now", description="What the daemon does now.")
+    parser = subparsers.add_parser(
+        "status",
+        help="what the daemon does now",
+        description="What the daemon does now, or did last. The exit code is 1 when none runs.",
+        epilog="example:\n  linedrawd status --state-dir try",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     add_places(parser)
     parser.set_defaults(run=status)
     parser = subparsers.add_parser(
