@@ -6,6 +6,7 @@ import fcntl
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
@@ -145,6 +146,8 @@ class Service:
         parts = self._parts
         parts.diary.say("linedrawd starts", version=__version__, inbox=self._inbox_dir)
         parts.board.change(state="idle")
+        # Before anything answers: whoever has got an answer finds a status.
+        parts.board.tick(time.monotonic())
         parts.desk.recover(self._inbox_dir)
         works = [parts.runner.plan_on, parts.runner.draw_on, self._watch.run, self._control.run, parts.board.run]
         threads = [threading.Thread(target=self._work, args=(work,), name=work.__qualname__) for work in works]

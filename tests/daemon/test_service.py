@@ -192,6 +192,16 @@ def test_a_second_daemon_on_the_same_folder_is_refused_and_names_the_first(tmp_p
         pass
 
 
+def test_the_status_is_there_before_anything_happens(tmp_path: Path) -> None:
+    settings, found = settings_of(tmp_path), list[str]()
+    with parts_of(settings, planner=PLANNER) as parts:
+        service = Service(settings, parts)
+        parts.desk.recover = lambda inbox: found.append(settings.paths.status.read_text())  # type: ignore[method-assign]
+        service.end()
+        service.run()
+    assert '"state": "idle"' in found[0]
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_thread_that_dies_ends_the_daemon_in_order(tmp_path: Path) -> None:
     settings = settings_of(tmp_path)

@@ -128,7 +128,9 @@ def test_wrong_settings_are_exit_code_2(
     assert sentence in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", ["plan", "draw", "cancel", "jobs", "simulate"])
+@pytest.mark.parametrize(
+    "command", ["plan", "draw", "next", "stop", "go", "cancel", "status", "jobs", "models", "simulate"]
+)
 def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str], command: str) -> None:
     with pytest.raises(SystemExit) as left:
         main([command, "--help"])
@@ -149,13 +151,13 @@ def test_the_daemon_runs_until_it_is_told_to_end_and_its_status_outlives_it(
     command = [sys.executable, "-m", "daemon.cli", "--device", "sim", "-v", *state(home)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ) as process:
         assert process.stderr is not None
-        while "the machine is ready" not in process.stderr.readline():
-            assert process.poll() is None
-        assert main(["stop", *state(home)]) == 0
-        assert main(["status", *state(home)]) == 0
-        assert f"pid            {process.pid}" in capsys.readouterr().out
+        ready = next((line for line in process.stderr if "the machine is ready" in line), "")
+        codes = [main(["stop", *state(home)]), main(["status", *state(home)])]
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=20)
+    assert ready
+    assert codes == [0, 0]
+    assert f"pid            {process.pid}" in capsys.readouterr().out
     assert process.returncode == 0
     assert main(["status", *state(home)]) == 1
     said = capsys.readouterr().out
