@@ -10,11 +10,13 @@ import numpy as np
 
 from daemon.graph.anchors import anchored
 from daemon.graph.bends import sharpened
+from daemon.graph.crossings import Lines, unmelted
 from daemon.graph.feedback import Adaptation
 from daemon.graph.joints import joined
 from daemon.graph.plausibility import values_at
+from daemon.graph.remains import fillings, tied
 from daemon.graph.ridge import onto_ridge
-from daemon.graph.skeleton import chain_points, chains, thinned
+from daemon.graph.skeleton import Indices, chain_points, chains, thinned
 from daemon.graph.straight import equations_alone, straight_edges
 from daemon.graph.trace import unexplained
 from daemon.graph.vertices import centroids, corner_vertices
@@ -23,6 +25,7 @@ from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segment
 
 _SIMPLIFIED_PX = 0.12
 _LEAST_SPECK_PX = 3
+_ROUNDS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,13 +122,37 @@ def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> Lin
     if not polylines:
         return LineGraph(np.empty((0, 2)), ())
     polylines, ends = joined(polylines, ends, nodes.vertices)
-    polylines, vertices = onto_ridge(polylines, ends, nodes.vertices, ink.shades, width_px=width_px)
-    response = segmentation.lines + segmentation.corners
-    lengths = np.array([len(polyline) for polyline in polylines])
-    values = values_at(response, np.concatenate(polylines))
+    lines = _filled(_on_ridge(polylines, ends, nodes.vertices, ink), ink)
+    return _used(lines.vertices, _edges(lines, segmentation.lines + segmentation.corners))
+
+
+def _on_ridge(polylines: list[Points], ends: Indices, vertices: Points, ink: _Ink) -> Lines:
+    """The edges in the middle of the ink, crossings that have melted into two junctions put right."""
+    lines = onto_ridge(polylines, ends, vertices, ink.shades, width_px=ink.width_px)
+    for _ in range(_ROUNDS):
+        better = unmelted(lines, width_px=ink.width_px)
+        if better is None:
+            break
+        lines = onto_ridge(*better, ink.shades, width_px=ink.width_px)
+    return lines
+
+
+def _filled(lines: Lines, ink: _Ink) -> Lines:
+    """The edges, and more where lines have melted into an area that they do not cover."""
+    polylines, ends, vertices = fillings(ink.lines, lines.polylines, width_px=ink.width_px)
+    ends, vertices = ends + len(lines.vertices), np.concatenate([lines.vertices, vertices])
+    polylines, ends = tied(polylines, ends, lines.ends, vertices, within_px=1.5 * ink.width_px + 2.0)
+    sound = [np.zeros(len(polyline), bool) for polyline in polylines]
+    return Lines(lines.polylines + polylines, lines.sound + sound, np.concatenate([lines.ends, ends]), vertices)
+
+
+def _edges(lines: Lines, response: Map) -> list[Edge]:
+    """The edges with what the channels say of them."""
+    lengths = np.array([len(polyline) for polyline in lines.polylines])
+    values = values_at(response, np.concatenate(lines.polylines))
     scores = (np.add.reduceat(values, np.cumsum(lengths) - lengths) / lengths).tolist()
-    edges = zip(ends.tolist(), polylines, scores, strict=True)
-    return _used(vertices, [Edge(p, q, _simplified(polyline), score) for (p, q), polyline, score in edges])
+    edges = zip(lines.ends.tolist(), lines.polylines, scores, strict=True)
+    return [Edge(p, q, _simplified(polyline), score) for (p, q), polyline, score in edges]
 
 
 def _simplified(polyline: Points) -> Points:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.graph.crossings import Lines
 from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
 from daemon.shapes import Map, Points
@@ -36,13 +37,11 @@ class _Bundle:
     edge: Indices
 
 
-def onto_ridge(
-    polylines: list[Points], ends: Indices, vertices: Points, ink: Map, *, width_px: float
-) -> tuple[list[Points], Points]:
+def onto_ridge(polylines: list[Points], ends: Indices, vertices: Points, ink: Map, *, width_px: float) -> Lines:
     """Polylines and vertices moved sideways onto the middle of the ink.
 
     polylines: (N, 2) each, from vertex to vertex. ends: (E, 2) indices of their vertices. ink: float32 (H, W), 1 =
-    full ink. width_px: of the line. Returns polylines of points one px apart and the vertices (V, 2). A point moves to
+    full ink. width_px: of the line. Returns polylines of points about one px apart. A point moves to
     the centroid of the ink across the edge; where other lines run into the profile it follows its neighbours. A vertex
     moves to where the lines that enter it meet (least squares), at most half a line width or a pixel.
     """
@@ -52,7 +51,8 @@ def onto_ridge(
         bundle = _shifted(bundle, normals, _spread(offsets, valid, bundle))
     moved = _meeting_points(bundle, valid, ends, vertices, width_px)
     bundle = _pinned(bundle, valid, ends, moved)
-    return [bundle.points[a : b + 1] for a, b in zip(bundle.first, bundle.last, strict=True)], moved
+    rows = [slice(a, b + 1) for a, b in zip(bundle.first, bundle.last, strict=True)]
+    return Lines([bundle.points[r] for r in rows], [valid[r] for r in rows], ends, moved)
 
 
 def _bundle(polylines: list[Points]) -> _Bundle:

@@ -41,12 +41,24 @@ def unexplained(
 
 def _is_line(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_], width_px: float) -> bool:
     x, y = skeleton.pixels[chain.path].T
-    if _longest_run(~near[y, x]) < min(_RUN_PX, len(chain.path)):
-        return False
+    bare = ~near[y, x]
+    if _longest_run(bare) < min(_RUN_PX, len(chain.path)):
+        # The pixels that its vertices own are ink of this chain, too.
+        before, after = (_bare(chain, skeleton, vertices, near, end) for end in (0, -1))
+        if _longest_run(np.concatenate([before, bare, after[::-1]])) < _RUN_PX:
+            return False
     if chain.start != chain.end:
         return True
     away = np.hypot(*(skeleton.pixels[chain.path] - vertices[chain.start]).T).max()
     return bool(away > max(4.0, 2 * width_px))
+
+
+def _bare(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_], end: int) -> NDArray[np.bool_]:
+    """Whether straight edges leave out the points, one px apart, from the vertex at one end to the chain's pixels."""
+    vertex, pixel = vertices[(chain.start, chain.end)[end]], skeleton.pixels[chain.path[end]]
+    count = int(np.hypot(*(pixel - vertex)))
+    x, y = np.rint(np.linspace(vertex, pixel, count, endpoint=False)).astype(np.intp).T
+    return np.asarray(~near[y.clip(0, near.shape[0] - 1), x.clip(0, near.shape[1] - 1)])
 
 
 def _short(touching: list[Chain], vertices: Points, joined: list[tuple[int, int]]) -> list[Chain]:

@@ -17,6 +17,7 @@ MOST_SIDE_PX = 4096
 
 _CELL_PX = 32
 _WIDTHS_A_CELL = 6
+_MELTED, _LEAST_CELLS = 1.5, 12
 _LEAST_INK = 0.1
 """Less than this share of full ink is grain."""
 
@@ -43,24 +44,24 @@ def line_width_px(grey: Grey) -> float | None:
     grey: uint8 (H, W), dark ink on light paper. The ink of a line is its length times its width, its outline twice
     its length; and the outline is the integral of the gradient (coarea formula), which needs no threshold and holds
     for lines thinner than a pixel. Median over cells of the page, each counted by its outline, so that filled areas
-    do not outvote the lines.
+    do not outvote the lines; where cells differ much the thinnest say how wide the pen is.
     """
     found = tones(grey)
     if found is None:
         return None
-    width_px = _cell_median(grey, found, _CELL_PX)
-    if _WIDTHS_A_CELL * width_px > _CELL_PX:
-        width_px = _cell_median(grey, found, round(_WIDTHS_A_CELL * width_px))
-    return width_px
+    median_px, usual_px = _cell_widths(grey, found, _CELL_PX)
+    if _WIDTHS_A_CELL * median_px > _CELL_PX:
+        _, usual_px = _cell_widths(grey, found, round(_WIDTHS_A_CELL * median_px))
+    return usual_px
 
 
-def _cell_median(grey: Grey, found: Tones, cell_px: int) -> float:
-    """Band by band, so that memory does not grow with the page."""
+def _cell_widths(grey: Grey, found: Tones, cell_px: int) -> tuple[float, float]:
+    """The median and the usual width of all cells; band by band, so that memory does not grow with the page."""
     padded = np.pad(grey, 1, mode="constant", constant_values=255)
     cells = [_band(padded[top : top + cell_px + 1], found, cell_px) for top in range(0, len(padded) - 1, cell_px)]
     area, outline = np.concatenate(cells, axis=1)
     held = outline > 0
-    return _weighted_median(2 * area[held] / outline[held], outline[held])
+    return _usual(2 * area[held] / outline[held], outline[held])
 
 
 def _band(rows: Grey, found: Tones, cell_px: int) -> NDArray[np.float64]:
@@ -73,10 +74,13 @@ def _band(rows: Grey, found: Tones, cell_px: int) -> NDArray[np.float64]:
     return np.stack([np.add.reduceat(sums, starts) for sums in (inner.sum(axis=0), outline.sum(axis=0))]).astype(float)
 
 
-def _weighted_median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
-    order = np.argsort(values)
+def _usual(widths: NDArray[np.float64], weights: NDArray[np.float64]) -> tuple[float, float]:
+    """The median and, where widths are far apart, the thinnest tenth instead: melted lines are no wide lines."""
+    order = np.argsort(widths)
     below = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(below, below[-1] / 2)])
+    thin, fifth, median, wide = widths[order][np.searchsorted(below, below[-1] * np.array([0.1, 0.2, 0.5, 0.7]))]
+    melted = wide > _MELTED * fifth and len(widths) >= _LEAST_CELLS
+    return float(median), float(thin if melted else median)
 
 
 def _scale(width_px: float, side_px: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -65,13 +66,12 @@ def _long_enough(points: Points, fixed: NDArray[np.bool_], shortest: float) -> P
     """Without the points that lie nearer than `shortest` to the one before or to a fixed one after them."""
     kept: list[int] = []
     for index, row in enumerate(points):
-        if kept and float(np.hypot(*(row - points[kept[-1]]))) < shortest:
-            if not fixed[index]:
-                continue
-            if not fixed[kept[-1]]:
-                kept.pop()
+        if kept and not fixed[index] and math.dist(row, points[kept[-1]]) < shortest:
+            continue
+        while kept and not fixed[kept[-1]] and math.dist(row, points[kept[-1]]) < shortest:
+            kept.pop()
         kept.append(index)
-    return points[kept]
+    return _without_repeats(points[kept], fixed[kept])[0]
 
 
 def _furthest(points: Points, error: float) -> int | None:

@@ -36,6 +36,13 @@ def test_a_filled_area_does_not_outvote_the_lines() -> None:
     assert line_width_px(grey) == pytest.approx(3, rel=0.1)
 
 
+def test_a_scribble_of_melted_lines_is_no_wide_line() -> None:
+    grey = drawn(width_px=3, side_px=256)
+    for x in range(20, 236, 4):
+        cv2.line(grey, (x, 70 + x % 50), (x, 190 - x % 30), 0, 3)
+    assert line_width_px(grey) == pytest.approx(3, rel=0.15)
+
+
 @pytest.mark.parametrize("level", [0, 255])
 def test_a_page_without_ink_has_no_width_and_stays(level: int) -> None:
     given = page(np.full((40, 40), level, np.uint8))

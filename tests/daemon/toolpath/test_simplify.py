@@ -44,14 +44,25 @@ def test_the_result_is_never_longer_and_repeats_no_point(points: Points, error: 
     assert (lengths[1] > 0).all()
 
 
-@given(polylines(most=40), errors, st.floats(0.1, 20))
+@given(st.integers(0, 10_000), st.integers(2, 9), st.floats(0.1, 60))
 def test_segments_are_as_long_as_the_machine_resolves_but_for_the_only_one(
+    seed: int, count: int, shortest: float
+) -> None:
+    points = np.random.default_rng(seed).uniform(0, 100, (count, 2))
+    result = simplify(points, error=0.0, shortest=shortest)
+    assert (result[[0, -1]] == points[[0, -1]]).all()
+    assert len(result) == 2 or np.linalg.norm(np.diff(result, axis=0), axis=1).min() >= shortest
+
+
+@given(polylines(most=40), errors, st.floats(0.1, 20))
+def test_points_left_out_for_shortness_add_no_more_than_that_to_the_error(
     points: Points, error: float, shortest: float
 ) -> None:
-    result = simplify(points, error=error, shortest=shortest)
-    assert (result[[0, -1]] == points[[0, -1]]).all()
-    assert len(result) <= 2 or np.linalg.norm(np.diff(result, axis=0), axis=1).min() >= shortest
-    assert distance(points, result).max() <= error + shortest + 1e-6
+    assert distance(points, simplify(points, error=error, shortest=shortest)).max() <= error + shortest + 1e-6
+
+
+def test_a_ring_shorter_than_the_machine_resolves_is_a_dot() -> None:
+    assert len(simplify(np.array([[0.0, 0], [0.01, 0], [0.01, 0.01], [0, 0]]), error=0.0, shortest=0.02)) == 1
 
 
 @given(polylines(most=20), st.integers(0, 19), errors, st.floats(0.1, 20))
