@@ -25,6 +25,13 @@ class Controller:
         """It speaks GRBL 0.x, whose reports have another form."""
         return self.firmware is not None and self.firmware.split(" ")[-1].startswith("0.")
 
+    @property
+    def displaced_mm(self) -> tuple[float, float]:
+        """Where a work offset (G54, G92) puts X0 Y0, in machine coordinates; (0, 0) where none is stored."""
+        x, y, _ = self._offset
+        unit_mm = MM_PER_INCH if self.settings.get(REPORTS_INCHES) == 1 else 1.0
+        return x * unit_mm, y * unit_mm
+
     def learn(self, reply: Reply) -> None:
         """Keep what `reply` tells; other replies tell nothing lasting."""
         match reply:

@@ -136,14 +136,17 @@ class Conversation:
         elif self._job is not None and self.flow is self._job.flow and line < len(self._job):
             self.events.append(Accepted(line))
         if self.flow.done:
-            self.go(self._completion())
+            self._complete()
 
-    def _completion(self) -> Signal:
+    def _complete(self) -> None:
+        """All questions or lines are answered. A work offset is refused: the reach was checked without one."""
         if self.state is not State.READING:
-            return Signal.COMPLETE
+            return self.go(Signal.COMPLETE)
+        if self.controller.displaced_mm != (0.0, 0.0):
+            return self.go(Signal.DISPLACED, sentences.displaced(self.controller.displaced_mm))
         if self._habits.home:
-            return Signal.HOME
-        return Signal.LOCKED if self.controller.locked else Signal.COMPLETE
+            return self.go(Signal.HOME)
+        return self.go(Signal.LOCKED if self.controller.locked else Signal.COMPLETE)
 
     def _refused(self, line: int, code: int) -> None:
         if self.state is State.HOMING:

@@ -24,6 +24,14 @@ def outdated(firmware: str) -> str:
     return f"the controller runs {firmware}, which does not report its state: flash GRBL 1.1"
 
 
+def displaced(offset_mm: tuple[float, float]) -> str:
+    """offset_mm: of X0 Y0, in machine coordinates."""
+    return (
+        f"a work offset is stored that moves X0 Y0 to ({offset_mm[0]:g}, {offset_mm[1]:g}) mm, so a drawing comes "
+        "out there: clear it with `G10 L2 P1 X0 Y0` and `G92.1` from any sender"
+    )
+
+
 def rejected(number: int, text: str, code: int) -> str:
     """number: from 1."""
     return f"line {number} ({text!r}) was refused with error:{code}, {codes.error(code)}"

@@ -35,6 +35,7 @@ class Signal(Enum):
     LOCKED = auto()
     NO_LIFT = auto()
     OUTDATED = auto()
+    DISPLACED = auto()
     START = auto()
     STOP = auto()
     ABORT = auto()
@@ -75,6 +76,7 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     (State.READING, Signal.REFUSED): State.GREETED,
     (State.READING, Signal.HOME): State.HOMING,
     (State.READING, Signal.LOCKED): State.LOST,
+    (State.READING, Signal.DISPLACED): State.LOST,
     (State.READING, Signal.COMPLETE): State.READY,
     (State.READING, Signal.STUCK): State.LOST,
     (State.HOMING, Signal.BANNER): State.LOST,

@@ -38,6 +38,21 @@ def test_a_clone_that_knows_no_build_info_is_taken_with_128_bytes() -> None:
     assert play.told == [Ready("Grbl 1.1h", 128)]
 
 
+def test_a_stored_work_offset_in_the_plane_of_the_sheet_is_refused_with_the_cure() -> None:
+    play = Play()
+    for lines in ((BANNER,), ("<Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:-50.000,-30.000,0.000>",), INFO, SETTINGS):
+        play.say(*lines)
+    assert "(-50, -30) mm" in why(play)
+    assert "G10 L2 P1 X0 Y0" in why(play)
+
+
+def test_a_stored_height_of_the_pen_is_no_reason_to_refuse() -> None:
+    play = Play()
+    for lines in ((BANNER,), ("<Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:0.000,0.000,-12.500>",), INFO, SETTINGS):
+        play.say(*lines)
+    assert play.told == [Ready("Grbl 1.1h.20190825", 128)]
+
+
 def test_a_controller_that_still_moves_is_asked_again() -> None:
     play = Play()
     play.say(BANNER)
