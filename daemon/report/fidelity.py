@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.ink import Mask, ink_mask, thin
+from daemon.report.places import Place, places
 from daemon.shapes import Grey, PageImage, Points
 
 PRECISION_WITHIN_PX = 1.0
 RECALL_WITHIN_PX = 1.5
+_BESIDE_PX = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +30,10 @@ class Fidelity:
     """Harmonic mean of precision and recall."""
     iou: float
     """Intersection over union of the page's ink and the lines, drawn again at the page's line width."""
+    not_drawn: tuple[Place, ...] = ()
+    """Ink that no line covers, longer than two line widths; a pixel beside a line is covered."""
+    not_on_ink: tuple[Place, ...] = ()
+    """Drawn line where there is no ink, longer than two line widths; a pixel beside ink is on it."""
 
 
 def fidelity(page: PageImage, strokes: Sequence[Points], *, line_width_px: float) -> Fidelity:
@@ -44,7 +50,10 @@ def fidelity(page: PageImage, strokes: Sequence[Points], *, line_width_px: float
     precision = _precision(ink, strokes, line_width_px)
     recall = _recall(ink, strokes, max(RECALL_WITHIN_PX, line_width_px / 2))
     f1 = 2 * precision * recall / (precision + recall) if precision + recall else 0.0
-    return Fidelity(precision, recall, f1, _overlap(ink, within(strokes, ink.shape, line_width_px / 2)))
+    drawn = within(strokes, ink.shape, line_width_px / 2)
+    not_drawn = places(ink & ~_grown(drawn, _BESIDE_PX), longer_than_px=2 * line_width_px)
+    not_on_ink = places(drawn & ~_grown(ink, _BESIDE_PX), longer_than_px=2 * line_width_px)
+    return Fidelity(precision, recall, f1, _overlap(ink, drawn), not_drawn, not_on_ink)
 
 
 def line_width_px(grey: Grey) -> float:

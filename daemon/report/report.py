@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal, TypeAlias
 
 from daemon.report.fidelity import Fidelity
+from daemon.report.places import Place
 from daemon.shapes import LineGraph, PageImage, Toolpath
 
 FidelityOf: TypeAlias = Literal["planned", "executed"]
@@ -99,7 +100,12 @@ def from_json(text: str) -> Report:
         raise ValueError(
             f"report.json is not of this version, see {', '.join(sorted(strange))}: plan the picture again"
         )
-    return Report(**{**found, "fidelity": Fidelity(**found["fidelity"])})
+    return Report(**{**found, "fidelity": _fidelity(found["fidelity"])})
+
+
+def _fidelity(found: dict[str, Any]) -> Fidelity:
+    lists = {name: tuple(Place(**place) for place in found[name]) for name in ("not_drawn", "not_on_ink")}
+    return Fidelity(**found | lists)
 
 
 def _rounded(value: Any) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from daemon.report.fidelity import fidelity, line_width_px, within
+from daemon.report.places import Place, places
 from daemon.shapes import Grey, PageImage, Points
 
 SQUARE = np.array([[40, 40], [160, 40], [160, 160], [40, 160], [40, 40]], float)
@@ -132,3 +133,32 @@ def test_a_filled_area_is_not_taken_for_a_line_width() -> None:
 
 def test_the_line_width_of_an_empty_page_is_one() -> None:
     assert line_width_px(inked().grey) == 1.0
+
+
+def test_ink_that_was_not_drawn_is_named_with_its_place() -> None:
+    found = fidelity(inked(SQUARE, LINE), [SQUARE, LINE[:1]], line_width_px=3.0)
+    left, right = sorted(found.not_drawn, key=lambda place: place.left_px)[:: len(found.not_drawn) - 1]
+    assert 20 < left.left_px < 25
+    assert 179 <= right.left_px + right.width_px <= 183
+    assert all(place.top_px >= 99 and place.top_px + place.height_px <= 103 for place in found.not_drawn)
+    assert found.not_on_ink == ()
+
+
+def test_a_line_beside_all_ink_is_named_with_its_place() -> None:
+    found = fidelity(inked(SQUARE), [SQUARE, np.array([[60.0, 100], [140, 100]])], line_width_px=3.0)
+    assert found.not_drawn == ()
+    assert [(place.left_px, place.width_px) for place in found.not_on_ink] == [(59, 83)]
+
+
+def test_what_is_no_longer_than_two_line_widths_is_not_named() -> None:
+    assert fidelity(inked(SQUARE), [SQUARE, np.array([[98.0, 100], [101, 100]])], line_width_px=3.0).not_on_ink == ()
+
+
+def test_no_more_than_a_hundred_places_are_named_the_largest_first() -> None:
+    mask = np.zeros((120, 40), bool)
+    mask[::2, :10] = True
+    mask[:, 20:22] = True
+    mask[::2, 30:] = True
+    found = places(mask, longer_than_px=5)
+    assert found[0] == Place(20, 0, 2, 120, 240)
+    assert len(found) == 100

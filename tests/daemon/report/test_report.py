@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from daemon.report.fidelity import Fidelity
+from daemon.report.places import Place
 from daemon.report.report import Report, executed_report, from_json, planned_report, to_json
 from daemon.shapes import Edge, LineGraph, PageImage, Stroke, Toolpath
 
-PLANNED = Fidelity(precision=1.0, recall=0.98, f1=0.99, iou=0.9)
+PLANNED = Fidelity(precision=1.0, recall=0.98, f1=0.99, iou=0.9, not_drawn=(Place(3, 4, 12, 1, 9),))
 
 
 def example(*, estimated_s: float = 61.25) -> Report:
