@@ -61,14 +61,14 @@ class Intake(Section):
 
 
 class Planning(Section):
-    """Limits of the worker process, and how it reads a page."""
+    """Limits of the worker process, how it reads a page, and whether it says why in explain.json."""
 
     memory_mb: Annotated[int, Field(ge=128)] = 1024
     time_limit_s: Positive = 300.0
     threads: Annotated[int, Field(ge=1, le=64)] = 1
-    ahead: Annotated[int, Field(ge=1)] = 2
-    """How many jobs are planned before the machine is free for them."""
+    ahead: Annotated[int, Field(ge=1)] = 2  # jobs that are planned before the machine is free for them
     graph: Literal["repaired", "paper"] = "repaired"
+    explain: bool = False
 
 
 class Sheet(Section):

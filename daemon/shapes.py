@@ -63,6 +63,8 @@ class Edge:
     polyline: Points
     plausibility: float
     """Mean response of the lines channel along it, 0..1 (Raghav et al. 2020, Eq. 2)."""
+    least_plausibility: float = 0.0
+    """Response at its weakest pixel; 0 where nobody looked."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

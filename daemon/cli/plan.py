@@ -31,6 +31,9 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("pictures", nargs="+", metavar="PICTURE", type=Path)
     parser.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="made where it is missing")
+    parser.add_argument(
+        "--explain", action="store_true", help="write explain.json, too: why each edge was kept or refused"
+    )
     add_places(parser)
     parser.set_defaults(run=run)
 
@@ -38,6 +41,9 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """0 when all are planned, 1 when some are not; those are named on stderr."""
     settings = settings_of(args)
+    if args.explain:
+        planning = settings.planning.model_copy(update={"explain": True})
+        settings = settings.model_copy(update={"planning": planning})
     failed = 0
     with closing(Pool(settings)) as pool:
         for picture, folder in _folders(args.pictures, args.output.absolute()):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import cv2
@@ -19,6 +21,7 @@ from daemon.graph.ridge import onto_ridge
 from daemon.graph.skeleton import Indices, chain_points, chains, thinned
 from daemon.graph.straight import equations_alone, straight_edges
 from daemon.graph.trace import unexplained
+from daemon.graph.verdicts import Verdict, verdicts
 from daemon.graph.vertices import centroids, corner_vertices
 from daemon.ink import Mask, ink_mask, thin
 from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segmentation
@@ -55,12 +58,20 @@ def interpret(
     adaptation: constants of Eq. 3, the paper's own by default. A page without ink gives a graph without edges. Raises
     ValueError when the maps differ in shape from the page or hold values that are not finite.
     """
-    _check(page, segmentation)
-    adaptation = adaptation or Adaptation()
-    ink = _ink_of(page)
     if mode == "paper":
-        return _by_the_paper(segmentation, ink, adaptation)
-    return _with_dots(_lines(segmentation, ink, adaptation), ink.dots)
+        _check(page, segmentation)
+        return _by_the_paper(segmentation, _ink_of(page), adaptation or Adaptation())
+    return interpret_with_reasons(page, segmentation, adaptation=adaptation)[0]
+
+
+def interpret_with_reasons(
+    page: PageImage, segmentation: Segmentation, *, adaptation: Adaptation | None = None
+) -> tuple[LineGraph, Callable[[], list[Verdict]]]:
+    """The repaired graph of `interpret`, and what says, when it is called, why each candidate was kept or refused."""
+    _check(page, segmentation)
+    ink = _ink_of(page)
+    graph, reasons = _lines(segmentation, ink, adaptation or Adaptation())
+    return _with_dots(graph, ink.dots), reasons
 
 
 def _check(page: PageImage, segmentation: Segmentation) -> None:
@@ -107,23 +118,27 @@ def _by_the_paper(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation)
     return LineGraph(vertices, tuple(edges))
 
 
-def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> LineGraph:
-    """The edges of all ink but the dots."""
+def _lines(
+    segmentation: Segmentation, ink: _Ink, adaptation: Adaptation
+) -> tuple[LineGraph, Callable[[], list[Verdict]]]:
+    """The edges of all ink but the dots, and the reasons."""
     width_px, shape = ink.width_px, (ink.lines.shape[0], ink.lines.shape[1])
     skeleton = thinned(ink.lines, shortest_spur_px=width_px / 2 + 1.5)
     corners = corner_vertices(segmentation.corners, ink.lines)
     nodes = anchored(skeleton, corners, shape, width_px=width_px)
     found = chains(skeleton, nodes.owners)
-    straight = straight_edges(segmentation, nodes, skeleton, found, ink.lines, adaptation, width_px=width_px)
+    judged = straight_edges(segmentation, nodes, skeleton, found, ink.lines, adaptation, width_px=width_px)
+    straight = judged.kept
     traced = unexplained(found, skeleton, nodes.vertices, straight, shape, width_px=width_px)
+    reasons = partial(verdicts, nodes.vertices, judged, found, traced)
     polylines = [nodes.vertices[pair] for pair in straight]
     polylines += [sharpened(chain_points(skeleton, chain, nodes.vertices), ink.lines) for chain in traced]
     ends = np.array([*straight.tolist(), *((chain.start, chain.end) for chain in traced)], np.intp).reshape(-1, 2)
     if not polylines:
-        return LineGraph(np.empty((0, 2)), ())
+        return LineGraph(np.empty((0, 2)), ()), reasons
     polylines, ends = joined(polylines, ends, nodes.vertices)
     lines = _filled(_on_ridge(polylines, ends, nodes.vertices, ink), ink)
-    return _used(lines.vertices, _edges(lines, segmentation.lines + segmentation.corners))
+    return _used(lines.vertices, _edges(lines, segmentation.lines + segmentation.corners)), reasons
 
 
 def _on_ridge(polylines: list[Points], ends: Indices, vertices: Points, ink: _Ink) -> Lines:
@@ -149,10 +164,12 @@ def _filled(lines: Lines, ink: _Ink) -> Lines:
 def _edges(lines: Lines, response: Map) -> list[Edge]:
     """The edges with what the channels say of them."""
     lengths = np.array([len(polyline) for polyline in lines.polylines])
+    firsts = np.cumsum(lengths) - lengths
     values = values_at(response, np.concatenate(lines.polylines))
-    scores = (np.add.reduceat(values, np.cumsum(lengths) - lengths) / lengths).tolist()
-    edges = zip(lines.ends.tolist(), lines.polylines, scores, strict=True)
-    return [Edge(p, q, _simplified(polyline), score) for (p, q), polyline, score in edges]
+    means = np.add.reduceat(values, firsts) / lengths
+    leasts = np.minimum.reduceat(values, firsts)
+    edges = zip(lines.ends.tolist(), lines.polylines, means.tolist(), leasts.tolist(), strict=True)
+    return [Edge(p, q, _simplified(polyline), mean, least) for (p, q), polyline, mean, least in edges]
 
 
 def _simplified(polyline: Points) -> Points:
@@ -169,7 +186,7 @@ def _used(vertices: Points, edges: list[Edge]) -> LineGraph:
     for edge in edges:
         kept[[edge.start, edge.end]] = True
     number = (np.cumsum(kept) - 1).tolist()
-    renamed = [Edge(number[e.start], number[e.end], e.polyline, e.plausibility) for e in edges]
+    renamed = [replace(edge, start=number[edge.start], end=number[edge.end]) for edge in edges]
     return LineGraph(vertices[kept], tuple(renamed))
 
 

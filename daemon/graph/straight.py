@@ -10,6 +10,7 @@ from daemon.graph.feedback import Adaptation, select
 from daemon.graph.plausibility import Floats, pairs_on_ink, plausibilities
 from daemon.graph.repairs import TRIM_PX, clear_of_corners, filled, redundant, suppressed, without_gap
 from daemon.graph.skeleton import Chain, Indices, Skeleton
+from daemon.graph.verdicts import BEND, FILL, GAP, KEPT, PLAUSIBILITY, PRUNE, SUPPRESSION, THRESHOLD, Judged
 from daemon.ink import Mask
 from daemon.shapes import Points, Segmentation
 
@@ -43,8 +44,8 @@ def straight_edges(
     adaptation: Adaptation,
     *,
     width_px: float,
-) -> Indices:
-    """Pairs (E, 2) of vertices that a straight line joins, each line once.
+) -> Judged:
+    """Pairs of vertices that a straight line may join, judged: each line of the page is kept once.
 
     Candidates are pairs at most three chains apart and pairs near each other on the page, about a hundred a vertex, so
     their number grows with the vertices, not with their square.
@@ -55,28 +56,32 @@ def straight_edges(
     vertices = anchored.vertices[: anchored.corners]
     near = nearest(vertices, (ink.shape[0], ink.shape[1]))
     pairs, bends = _candidates(anchored, skeleton, chains, ink, near)
-    sound = _sound(vertices, pairs, bends, ink, width_px)
-    looked_at = sound | (bends >= 0)
-    pairs, bends, sound = pairs[looked_at], bends[looked_at], sound[looked_at]
-    response = segmentation.lines + segmentation.corners
-    eta = plausibilities(response, *_ends(vertices, pairs), width_px=BETA_PX, trim_px=TRIM_PX)
-    sound &= eta > adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds
-    allowed = sound & ~suppressed(vertices, pairs, pairs[(eta > adaptation.tau0) | (bends >= 0)], near)
-    pairs, bends, eta = pairs[allowed], bends[allowed], eta[allowed]
-    chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px)
-    pairs, bends, eta = pairs[chosen], bends[chosen], eta[chosen]
-    unbacked = np.flatnonzero(bends < 0)
-    order = unbacked[np.argsort(eta[unbacked], kind="stable")]
-    return pairs[~redundant(ink.shape, *_ends(vertices, pairs), order)]
+    rules = _by_ink(vertices, pairs, bends, ink, width_px)
+    eta = np.full(len(pairs), np.nan)
+    looked_at = (rules == KEPT) | (bends >= 0)
+    response, ends = segmentation.lines + segmentation.corners, _ends(vertices, pairs[looked_at])
+    eta[looked_at] = plausibilities(response, *ends, width_px=BETA_PX, trim_px=TRIM_PX)
+    rules[(rules == KEPT) & ~(eta > adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds)] = PLAUSIBILITY
+    left = np.flatnonzero(rules == KEPT)
+    known = pairs[looked_at & ((eta > adaptation.tau0) | (bends >= 0))]
+    rules[left[suppressed(vertices, pairs[left], known, near)]] = SUPPRESSION
+    left = np.flatnonzero(rules == KEPT)
+    rules[left[~select(vertices, pairs[left], eta[left], ink, adaptation, width_px=width_px)]] = THRESHOLD
+    left = np.flatnonzero(rules == KEPT)
+    unbacked = np.flatnonzero(bends[left] < 0)
+    order = unbacked[np.argsort(eta[left[unbacked]], kind="stable")]
+    rules[left[redundant(ink.shape, *_ends(vertices, pairs[left]), order)]] = PRUNE
+    return Judged(pairs, eta, rules)
 
 
-def _sound(vertices: Points, pairs: Indices, bends: Floats, ink: Mask, width_px: float) -> NDArray[np.bool_]:
+def _by_ink(vertices: Points, pairs: Indices, bends: Floats, ink: Mask, width_px: float) -> NDArray[np.int8]:
     """Which pairs have the ink of a line between them; a full line's width of it where no chain joins the two."""
-    sound = bends <= _BEND_PX
-    sound[sound] = without_gap(ink, *_ends(vertices, pairs[sound]))
-    alone = sound & (bends < 0)
-    sound[alone] = filled(ink, *_ends(vertices, pairs[alone]), width_px=width_px)
-    return sound
+    rules = np.where(bends <= _BEND_PX, KEPT, BEND).astype(np.int8)
+    left = np.flatnonzero(rules == KEPT)
+    rules[left[~without_gap(ink, *_ends(vertices, pairs[left]))]] = GAP
+    alone = np.flatnonzero((rules == KEPT) & (bends < 0))
+    rules[alone[~filled(ink, *_ends(vertices, pairs[alone]), width_px=width_px)]] = FILL
+    return rules
 
 
 def bends_px(skeleton: Skeleton, chains: list[Chain], vertices: Points) -> Floats:

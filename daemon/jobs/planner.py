@@ -19,8 +19,9 @@ import numpy as np
 
 from daemon.config import Machine, Settings, Sheet
 from daemon.errors import LinedrawError
-from daemon.graph.interpret import interpret
+from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
+from daemon.graph.verdicts import as_json
 from daemon.intake.decode import decode
 from daemon.jobs.folder import write_durably
 from daemon.jobs.pens import pen_of
@@ -62,7 +63,7 @@ def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *
     with stages("vision"):
         segmentation = segmenter(settings.planning.threads).segment(page)
     with stages("graph"):
-        graph = interpret(page, segmentation, mode=settings.planning.graph)
+        graph = _graph(page, segmentation, folder, settings)
         on_page = _strokes(graph, page, settings)
         drawing = on_given(on_page, page)
     with stages("toolpath"):
@@ -122,6 +123,15 @@ def on_given(drawing: Drawing, page: PageImage) -> Drawing:
     """The same strokes in px of the given picture."""
     moved = tuple(replace(stroke, points=place(stroke.points, page.to_given)) for stroke in drawing.strokes)
     return Drawing(moved, page.given_width_px, page.given_height_px, page.px_per_mm)
+
+
+def _graph(page: PageImage, segmentation: Segmentation, folder: Path, settings: Settings) -> LineGraph:
+    """The graph of a page, and explain.json where it is asked for: the paper's own form has no rules to explain."""
+    if settings.planning.graph == "paper" or not settings.planning.explain:
+        return interpret(page, segmentation, mode=settings.planning.graph)
+    graph, reasons = interpret_with_reasons(page, segmentation)
+    write_durably(folder / "explain.json", json.dumps(as_json(graph, reasons())).encode())
+    return graph
 
 
 def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
