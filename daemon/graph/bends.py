@@ -15,21 +15,26 @@ _SHARP_DEGREES = 60.0
 _LEG = slice(4, 11)
 """Steps away from a bend that show where the straight parts before and after it lie."""
 _FARTHEST_PX = 8.0
+_SHARES = np.array([[1.0], [0.75], [0.5], [0.25]])
 
 
-def sharpened(polyline: Points, ink: Mask) -> Points:
-    """The polyline led through the tips of its sharp bends.
+def sharpened(polyline: Points, ink: Mask) -> list[Points]:
+    """The polyline led through the tips of its sharp bends, and cut there: what follows would round them off again.
 
     polyline: (N, 2) in px, pixel by pixel. ink: bool (H, W). A tip is where the straight parts before and after a bend
-    meet; it counts when it is inked and at most 8 px from the bend.
+    meet, at most 8 px from the bend, or as far towards that as there is ink. Each piece begins where the one before it
+    ends.
     """
-    result, done = [polyline[:0]], 0
+    pieces, begun, done = [], polyline[:0], 0
     for at in _bends(polyline):
         tip = _meeting(polyline[at - _LEG.stop : at - _LEG.start], polyline[at + _LEG.start : at + _LEG.stop])
-        if np.hypot(*(tip - polyline[at])) <= _FARTHEST_PX and _is_inked(tip, ink):
-            result += [polyline[done : at - _SPAN + 1], tip[None]]
-            done = at + _SPAN
-    return np.concatenate([*result, polyline[done:]])
+        if np.hypot(*(tip - polyline[at])) > _FARTHEST_PX:
+            continue
+        inked = [place for place in polyline[at] + _SHARES * (tip - polyline[at]) if _is_inked(place, ink)]
+        if inked:
+            pieces.append(np.concatenate([begun, polyline[done : at - _SPAN + 1], inked[:1]]))
+            begun, done = inked[0][None], at + _SPAN
+    return [*pieces, np.concatenate([begun, polyline[done:]])]
 
 
 def _bends(polyline: Points) -> list[int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 from typing import Literal
 
 import cv2
@@ -18,7 +19,7 @@ from daemon.graph.joints import joined
 from daemon.graph.plausibility import values_at
 from daemon.graph.remains import fillings, tied
 from daemon.graph.ridge import onto_ridge
-from daemon.graph.skeleton import Indices, chain_points, chains, thinned
+from daemon.graph.skeleton import Chain, Indices, Skeleton, chain_points, chains, thinned
 from daemon.graph.straight import equations_alone, straight_edges
 from daemon.graph.trace import unexplained
 from daemon.graph.verdicts import Verdict, verdicts
@@ -131,14 +132,30 @@ def _lines(
     straight = judged.kept
     traced = unexplained(found, skeleton, nodes.vertices, straight, shape, width_px=width_px)
     reasons = partial(verdicts, nodes.vertices, judged, found, traced)
-    polylines = [nodes.vertices[pair] for pair in straight]
-    polylines += [sharpened(chain_points(skeleton, chain, nodes.vertices), ink.lines) for chain in traced]
-    ends = np.array([*straight.tolist(), *((chain.start, chain.end) for chain in traced)], np.intp).reshape(-1, 2)
+    polylines, ends, vertices = _cut_at_tips(skeleton, traced, nodes.vertices, ink.lines)
+    polylines = [nodes.vertices[pair] for pair in straight] + polylines
     if not polylines:
         return LineGraph(np.empty((0, 2)), ()), reasons
-    polylines, ends = joined(polylines, ends, nodes.vertices)
-    lines = _filled(_on_ridge(polylines, ends, nodes.vertices, ink), ink)
+    polylines, ends = joined(polylines, np.concatenate([straight, ends]), vertices)
+    lines = _filled(_on_ridge(polylines, ends, vertices, ink), ink)
     return _used(lines.vertices, _edges(lines, segmentation.lines + segmentation.corners)), reasons
+
+
+def _cut_at_tips(
+    skeleton: Skeleton, traced: list[Chain], vertices: Points, ink: Mask
+) -> tuple[list[Points], Indices, Points]:
+    """The traced lines, cut at their sharp bends, with the vertices of each piece; each tip is one more vertex."""
+    polylines: list[Points] = []
+    ends: list[tuple[int, int]] = []
+    tips: list[Points] = []
+    for chain in traced:
+        pieces = sharpened(chain_points(skeleton, chain, vertices), ink)
+        first = len(vertices) + len(tips)
+        stops = [chain.start, *range(first, first + len(pieces) - 1), chain.end]
+        polylines += pieces
+        ends += pairwise(stops)
+        tips += [piece[-1:] for piece in pieces[:-1]]
+    return polylines, np.array(ends, np.intp).reshape(-1, 2), np.concatenate([vertices, *tips])
 
 
 def _on_ridge(polylines: list[Points], ends: Indices, vertices: Points, ink: _Ink) -> Lines:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from daemon.graph.anchors import anchored
 from daemon.graph.skeleton import Indices, chain_points, chains, thinned
@@ -48,24 +48,32 @@ def fillings(ink: Mask, polylines: Sequence[Points], *, width_px: float) -> tupl
 def tied(
     polylines: list[Points], ends: Indices, others: Indices, vertices: Points, *, within_px: float
 ) -> tuple[list[Points], Indices]:
-    """The polylines led on to vertices near their loose ends where that saves a lift of the pen.
+    """The polylines led on to vertices near their loose ends.
 
     ends, others: (E, 2) vertices of the polylines and of all other edges. Of the vertices in which an odd number of
-    other edges end the nearest takes a loose end, each one.
+    other edges end the nearest takes a loose end, each one, for that saves a lift of the pen. A polyline that would
+    hang on nothing is led to any vertex.
     """
     degrees = np.bincount(others.ravel(), minlength=len(vertices))
-    own = np.bincount(ends.ravel(), minlength=len(vertices))
-    free = set(np.flatnonzero(degrees % 2 == 1).tolist())
-    tied_ends, longer = ends.copy(), list(polylines)
-    for index, side in np.argwhere(own[ends] == 1).tolist():
-        near = [
-            (math.dist(vertices[v], vertices[ends[index, side]]), v) for v in free if v != tied_ends[index, 1 - side]
-        ]
-        away, vertex = min(near, default=(math.inf, -1))
-        if away <= within_px:
-            free.remove(vertex)
-            tied_ends[index, side] = vertex
-            longer[index] = np.insert(longer[index], side * len(longer[index]), vertices[vertex], axis=0)
+    free, used = degrees % 2 == 1, degrees > 0
+    loose = np.bincount(ends.ravel(), minlength=len(vertices))[ends] == 1
+    longer, tied_ends = list(polylines), ends.copy()
+
+    def tie(index: int, side: int, to: NDArray[np.bool_]) -> bool:
+        away = np.where(to, np.hypot(*(vertices - vertices[ends[index, side]]).T), np.inf)
+        away[tied_ends[index, 1 - side]] = np.inf
+        vertex = int(away.argmin())
+        if away[vertex] > within_px:
+            return False
+        free[vertex] = False
+        tied_ends[index, side] = vertex
+        longer[index] = np.insert(longer[index], side * len(longer[index]), vertices[vertex], axis=0)
+        return True
+
+    hanging = set(np.flatnonzero(loose.all(axis=1)).tolist())
+    hanging -= {index for index, side in np.argwhere(loose).tolist() if tie(index, side, free)}
+    for index in sorted(hanging):
+        tie(index, 0, used)
     return longer, tied_ends
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Callable, Iterable
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +17,7 @@ _COVERED_PX = 1.6
 _RUN_PX = 4
 """An uncovered stretch of a chain shorter than this is the rounding of a junction, not a line."""
 _SHIFT = 4
+_NEEDED_WIDTHS = 4.0
 
 
 def unexplained(
@@ -33,10 +37,13 @@ def unexplained(
     """
     near = _distance_to(straight, vertices, shape) <= _COVERED_PX
     drawn = {(min(pair), max(pair)) for pair in straight.tolist()}
-    kept = [chain for chain in chains if chain.path and _is_line(chain, skeleton, vertices, near, width_px)]
-    touching = [chain for chain in chains if not chain.path and (chain.start, chain.end) not in drawn]
+    lines = [chain for chain in chains if chain.path and _is_line(chain, skeleton, vertices, near, width_px)]
+    kept = _once(lines, longest_px=2 * width_px)
     joined = [*drawn, *((chain.start, chain.end) for chain in kept)]
-    return kept + _short(touching, vertices, joined)
+    touching = [chain for chain in chains if not chain.path and (chain.start, chain.end) not in drawn]
+    kept += _short(touching, vertices, joined)
+    kept += _needed(chains, kept, len(vertices), drawn, longest_px=_NEEDED_WIDTHS * width_px)
+    return _without_stubs(kept, chains, drawn, longest_px=width_px)
 
 
 def _is_line(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_], width_px: float) -> bool:
@@ -53,6 +60,18 @@ def _is_line(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[n
     return bool(away > max(4.0, 2 * width_px))
 
 
+def _once(chains: list[Chain], *, longest_px: float) -> list[Chain]:
+    """Of short chains between the same two vertices one: there is no ring in so little ink."""
+    kept, joined = [], set()
+    for chain in chains:
+        pair = (min(chain.start, chain.end), max(chain.start, chain.end))
+        if len(chain.path) > longest_px or pair not in joined:
+            kept.append(chain)
+        if len(chain.path) <= longest_px:
+            joined.add(pair)
+    return kept
+
+
 def _bare(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_], end: int) -> NDArray[np.bool_]:
     """Whether straight edges leave out the points, one px apart, from the vertex at one end to the chain's pixels."""
     vertex, pixel = vertices[(chain.start, chain.end)[end]], skeleton.pixels[chain.path[end]]
@@ -63,7 +82,75 @@ def _bare(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.b
 
 def _short(touching: list[Chain], vertices: Points, joined: list[tuple[int, int]]) -> list[Chain]:
     """The shortest of the touching pairs that connect what is not connected near by: no triangle within one blob."""
-    group = list(range(len(vertices)))
+    near = [(a, b) for a, b in joined if np.hypot(*(vertices[b] - vertices[a])) <= 6.0]
+    root, join = _groups(len(vertices), near)
+    kept = []
+    for chain in sorted(touching, key=lambda c: float(np.hypot(*(vertices[c.end] - vertices[c.start])))):
+        if root(chain.start) != root(chain.end):
+            join(chain.start, chain.end)
+            kept.append(chain)
+    return kept
+
+
+def _needed(
+    chains: list[Chain], kept: list[Chain], count: int, drawn: set[tuple[int, int]], *, longest_px: float
+) -> list[Chain]:
+    """Short chains under the ink of other edges without which what is joined on the page would fall apart."""
+    used = [*drawn, *((chain.start, chain.end) for chain in kept)]
+    root, join = _groups(count, used)
+    found = []
+    for chain in sorted(chains, key=lambda c: len(c.path)):
+        if len(chain.path) <= longest_px and root(chain.start) != root(chain.end):
+            join(chain.start, chain.end)
+            found.append(chain)
+    found += _loose(chains, kept + found, drawn, longest_px=longest_px / 2)
+    return _without_dead_ends(found, {vertex for pair in used for vertex in pair})
+
+
+def _without_stubs(
+    kept: list[Chain], chains: list[Chain], drawn: set[tuple[int, int]], *, longest_px: float
+) -> list[Chain]:
+    """Without the shortest chains into a fork of the ink whose other branches straight edges draw already."""
+    degrees = Counter(vertex for pair in drawn for vertex in pair)
+    degrees.update(vertex for chain in kept for vertex in (chain.start, chain.end))
+    forks = Counter(vertex for chain in chains for vertex in (chain.start, chain.end))
+    return [
+        chain
+        for chain in kept
+        if len(chain.path) > longest_px or not any(degrees[v] == 1 and forks[v] > 2 for v in (chain.start, chain.end))
+    ]
+
+
+def _loose(chains: list[Chain], kept: list[Chain], drawn: set[tuple[int, int]], *, longest_px: float) -> list[Chain]:
+    """The shortest chain on from each vertex in which only one edge ends although the ink goes on."""
+    pairs = [*drawn, *((chain.start, chain.end) for chain in kept)]
+    degrees = Counter(vertex for pair in pairs for vertex in pair)
+    joined = {(min(pair), max(pair)) for pair in pairs}
+    found = []
+    for chain in sorted(chains, key=lambda c: len(c.path)):
+        ends = (min(chain.start, chain.end), max(chain.start, chain.end))
+        if len(chain.path) > longest_px or chain.start == chain.end or ends in joined:
+            continue
+        if 1 in (degrees[chain.start], degrees[chain.end]) and min(degrees[v] for v in ends) > 0:
+            found.append(chain)
+            joined.add(ends)
+            degrees.update(ends)
+    return found
+
+
+def _without_dead_ends(chains: list[Chain], used: set[int]) -> list[Chain]:
+    """The chains without those that lead only to a vertex in which nothing else ends."""
+    while True:
+        ends = Counter(vertex for chain in chains for vertex in (chain.start, chain.end))
+        lively = [c for c in chains if all(vertex in used or ends[vertex] > 1 for vertex in (c.start, c.end))]
+        if len(lively) == len(chains):
+            return chains
+        chains = lively
+
+
+def _groups(count: int, pairs: Iterable[tuple[int, int]]) -> tuple[Callable[[int], int], Callable[[int, int], None]]:
+    """Vertices in groups (union-find): what names the group of a vertex, and what joins the groups of two."""
+    group = list(range(count))
 
     def root(vertex: int) -> int:
         while group[vertex] != vertex:
@@ -71,15 +158,12 @@ def _short(touching: list[Chain], vertices: Points, joined: list[tuple[int, int]
             vertex = group[vertex]
         return vertex
 
-    for start, end in joined:
-        if np.hypot(*(vertices[end] - vertices[start])) <= 6.0:
-            group[root(start)] = root(end)
-    kept = []
-    for chain in sorted(touching, key=lambda c: float(np.hypot(*(vertices[c.end] - vertices[c.start])))):
-        if root(chain.start) != root(chain.end):
-            group[root(chain.start)] = root(chain.end)
-            kept.append(chain)
-    return kept
+    def join(one: int, other: int) -> None:
+        group[root(one)] = root(other)
+
+    for pair in pairs:
+        join(*pair)
+    return root, join
 
 
 def _distance_to(edges: Indices, vertices: Points, shape: tuple[int, int]) -> NDArray[np.float32]:
