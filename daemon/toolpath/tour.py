@@ -20,7 +20,7 @@ _LONGEST_MOVED = 3
 _LONGEST_KICKED = 50
 _LONGEST_FLIP = 1000
 """Longer stretches are not turned round: it bounds the work on pages of thousands of strokes."""
-_KICKS_A_SEGMENT, _MOST_KICKS = 15, 1500
+_KICKS_A_SEGMENT, _MOST_KICKS = 5, 500
 _LEAST_GAIN = 1e-9
 
 
