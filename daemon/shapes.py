@@ -73,6 +73,8 @@ class LineGraph:
 
     vertices: Points
     edges: tuple[Edge, ...]
+    specks: int = 0
+    """Pieces of ink that were too small to be anything but dirt, and were left out."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

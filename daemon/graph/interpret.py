@@ -27,19 +27,21 @@ from daemon.graph.vertices import centroids, corner_vertices
 from daemon.ink import Mask, ink_mask, thin
 from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segmentation
 
-_SIMPLIFIED_PX = 0.12
+_SIMPLIFIED_PX = 0.04
+_ROUNDING_PX = 1e-3
 _LEAST_SPECK_PX = 3
 _ROUNDS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ink:
-    """The ink of a page: its lines as a mask, its dots (D, 2) in px, all of it in shades, and the line width."""
+    """The ink of a page: its lines as a mask, its dots (D, 2) in px, all of it in shades, line width, and specks."""
 
     lines: Mask
     dots: Points
     shades: Map
     width_px: float
+    specks: int
 
 
 def interpret(
@@ -72,7 +74,7 @@ def interpret_with_reasons(
     _check(page, segmentation)
     ink = _ink_of(page)
     graph, reasons = _lines(segmentation, ink, adaptation or Adaptation())
-    return _with_dots(graph, ink.dots), reasons
+    return replace(_with_dots(graph, ink.dots), specks=ink.specks), reasons
 
 
 def _check(page: PageImage, segmentation: Segmentation) -> None:
@@ -94,7 +96,8 @@ def _ink_of(page: PageImage) -> _Ink:
     dots = ~dirt & (stats[:, 2:4].max(axis=1) <= 1.5 * width_px + 1.0)
     dots[0] = dirt[0] = False
     lines = mask & ~(dots | dirt)[labels]
-    return _Ink(lines, np.asarray(centres[dots], np.float64).reshape(-1, 2), _shades(page.grey, mask), width_px)
+    middles = np.asarray(centres[dots], np.float64).reshape(-1, 2)
+    return _Ink(lines, middles, _shades(page.grey, mask), width_px, int(dirt.sum()))
 
 
 def _width_px(mask: Mask) -> float:
@@ -190,11 +193,11 @@ def _edges(lines: Lines, response: Map) -> list[Edge]:
 
 
 def _simplified(polyline: Points) -> Points:
-    """A polyline of fewer points, at most 0.12 px from the given one (Ramer 1972; Douglas and Peucker 1973)."""
+    """A polyline of fewer points, at most 0.04 px from the given one (Ramer 1972; Douglas and Peucker 1973)."""
     kept = cv2.approxPolyDP(polyline.astype(np.float32).reshape(-1, 1, 2), _SIMPLIFIED_PX, False).reshape(-1, 2)
-    result = kept.astype(np.float64)
-    result[0], result[-1] = polyline[0], polyline[-1]
-    return result
+    # OpenCV leaves out the last point of a closed curve: its first one again.
+    ended = len(kept) > 1 and np.abs(kept[-1] - polyline[-1]).max() < _ROUNDING_PX
+    return np.concatenate([polyline[:1], kept[1 : len(kept) - ended], polyline[-1:]])
 
 
 def _used(vertices: Points, edges: list[Edge]) -> LineGraph:

@@ -15,7 +15,7 @@ from daemon.shapes import Points
 
 _BESIDE_PX = 1.0
 """Ink so near to the drawn line's own is its rim: a pen is never exactly as wide as stated."""
-_LEAST_WIDTHS = 1.0
+_LEAST_WIDTHS = 1.5
 """What is left and no longer than this many line widths is the rounding of a corner."""
 _ROUNDS = 3
 _SHIFT = 4

@@ -13,7 +13,7 @@ from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
 from daemon.shapes import Map, Points
 
-_STEP_PX = 0.5
+_STEP_PX = 0.25
 _INKED = 0.25
 """Share of full ink above which a profile still belongs to the line."""
 _FIT_FROM_PX, _FIT_TO_PX = 1.5, 6.0

@@ -29,6 +29,8 @@ class Report:
     vertices: int
     edges: int
     strokes: int
+    specks: int
+    """Pieces of ink that were left out as dirt."""
     drawn_mm: float
     travelled_mm: float
     estimated_s: float
@@ -68,6 +70,7 @@ def planned_report(
         vertices=len(graph.vertices),
         edges=len(graph.edges),
         strokes=len(toolpath.strokes),
+        specks=graph.specks,
         drawn_mm=toolpath.drawn_mm,
         travelled_mm=toolpath.travelled_mm,
         estimated_s=estimated_s,

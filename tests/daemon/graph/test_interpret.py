@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.graph.interpret import interpret
+from daemon.graph.interpret import _simplified, interpret
+from daemon.graph.ridge import onto_ridge
 from daemon.graph.strokes import strokes
 from daemon.shapes import LineGraph, PageImage, Segmentation
 from tests.daemon.graph.drawn import (
@@ -126,6 +127,15 @@ def test_a_dot_is_a_stroke_of_one_point() -> None:
     assert np.abs(dots[0] - (64, 40)).max() < 0.6
 
 
+def test_an_edge_between_two_vertices_on_one_place_stays_there() -> None:
+    drawn = page(CROSS)
+    places = np.array([[64.0, 64], [64, 64]])
+    ink = np.asarray(drawn.grey < 128, np.float32)
+    lines = onto_ridge([places], np.array([[0, 1]]), places, ink, width_px=2.0)
+    assert np.isfinite(lines.vertices).all()
+    assert np.abs(lines.polylines[0] - (64, 64)).max() < 1.6
+
+
 def test_a_single_dark_pixel_is_dirt() -> None:
     grey = np.full((64, 64), 255, np.uint8)
     grey[30, 30] = 0
@@ -164,8 +174,29 @@ def test_channels_that_are_not_finite_are_refused() -> None:
         interpret(drawn, Segmentation(maps.background, maps.lines * np.nan, maps.corners))
 
 
+def test_twenty_thousand_specks_are_left_out_and_counted() -> None:
+    grey = np.full((900, 900), 255, np.uint8)
+    grey[2::6, 2::6] = 0
+    grey[2::6, 3::12] = 0
+    grey[400:402, 100:800] = 0
+    drawn = PageImage(grey, np.eye(2, 3), 900, 900, "")
+    graph = interpret(drawn, silent(drawn))
+    assert graph.specks == 150 * 150
+    assert len(graph.edges) == 1
+
+
 def test_thousands_of_specks_are_thousands_of_dots() -> None:
     grey = np.full((900, 900), 255, np.uint8)
     grey[::6, ::6] = grey[1::6, ::6] = grey[::6, 1::6] = grey[1::6, 1::6] = 0
     drawn = PageImage(grey, np.eye(2, 3), 900, 900, "")
     assert len(interpret(drawn, silent(drawn)).edges) == 150 * 150
+
+
+def test_a_closed_curve_is_simplified_without_losing_its_last_bend() -> None:
+    square = np.array([(0, 0), (20, 0), (20, 20), (0, 20), (0, 0)], float)
+    assert _simplified(square).tolist() == square.tolist()
+
+
+def test_an_open_curve_is_simplified_to_its_bends() -> None:
+    dense = np.array([*((x, 0) for x in range(11)), *((10, y) for y in range(1, 6))], float)
+    assert _simplified(dense).tolist() == [[0, 0], [10, 0], [10, 5]]

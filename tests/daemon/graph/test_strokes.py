@@ -81,6 +81,11 @@ def test_a_long_line_needs_no_recursion(mode: str) -> None:
     assert of_points(drawn(graph, mode=mode)) == [points]
 
 
+def test_two_vertices_on_one_place_are_drawn_through() -> None:
+    folded = graph_of([(0, 0), (5, 5), (5, 5), (9, 0)], [(0, 1), (1, 2), (2, 3)])
+    assert of_points(drawn(folded)) == [[(0, 0), (5, 5), (5, 5), (9, 0)]]
+
+
 def test_the_page_is_carried_on() -> None:
     drawing = strokes(CROSSING, width_px=12, height_px=34, px_per_mm=5.0)
     assert (drawing.width_px, drawing.height_px, drawing.px_per_mm) == (12, 34, 5.0)

@@ -20,7 +20,7 @@ PLANNED = Fidelity(precision=1.0, recall=0.98, f1=0.99, iou=0.9, not_drawn=(Plac
 def example(*, estimated_s: float = 61.25) -> Report:
     page = PageImage(np.full((120, 160), 255, np.uint8), np.eye(2, 3), 320, 240, "ab12")
     corners = np.array([[0.0, 0.0], [30.0, 40.0]])
-    graph = LineGraph(corners, (Edge(0, 1, corners, 1.0),))
+    graph = LineGraph(corners, (Edge(0, 1, corners, 1.0),), specks=7)
     toolpath = Toolpath((Stroke(corners),), np.eye(2, 3), park_mm=(30.0, 0.0))
     return planned_report(
         page,
@@ -38,7 +38,7 @@ def test_a_planned_report_counts_what_it_was_given() -> None:
     told = json.loads(to_json(example()))
     assert (told["given_width_px"], told["given_height_px"]) == (320, 240)
     assert (told["page_width_px"], told["page_height_px"]) == (160, 120)
-    assert (told["vertices"], told["edges"], told["strokes"]) == (2, 1, 1)
+    assert (told["vertices"], told["edges"], told["strokes"], told["specks"]) == (2, 1, 1, 7)
     assert (told["drawn_mm"], told["travelled_mm"]) == (50.0, 40.0)
     assert told["stage_s"] == {"decode": 0.0012, "vision": 0.2}
 
