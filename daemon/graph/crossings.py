@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
 from daemon.shapes import Points
 
@@ -36,7 +37,7 @@ class Lines:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Entry:
+class Entry:
     """How an edge comes to a vertex: a point on its line, the line's normal, and its first row that is in sound ink."""
 
     point: NDArray[np.float64]
@@ -53,8 +54,8 @@ def unmelted(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, P
     there. An edge of hardly a line's width between two lines that go on on both sides is taken out, too. Returns
     polylines, ends (E, 2) and vertices (V, 2), some of which no edge ends in any more.
     """
-    halves = _half_edges(lines.ends, len(lines.vertices))
-    entries: dict[int, _Entry | None] = {}
+    halves = half_edges(lines.ends, len(lines.vertices))
+    entries: dict[int, Entry | None] = {}
     places: dict[int, NDArray[np.float64]] = {}
     gone: set[int] = set()
     touched: set[int] = set()
@@ -64,7 +65,7 @@ def unmelted(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, P
         outer = [half for half in (*halves[a], *halves[b]) if half >> 1 != bridge]
         if a in touched or b in touched:
             continue
-        entries |= {half: _entry(lines, half, width_px) for half in outer if half not in entries}
+        entries |= {half: entry(lines, half, width_px) for half in outer if half not in entries}
         place = _place(lines, bridge, halves, entries, width_px)
         if place is not None:
             places[a], places[b] = place, place
@@ -72,12 +73,15 @@ def unmelted(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, P
             continue
         gone.add(bridge)
         touched |= {a, b}
-    return _led(lines, gone, places, entries, width_px) if gone else None
+    names = np.arange(len(lines.vertices))
+    for a, b in (lines.ends[bridge].tolist() for bridge in gone):
+        names[b] = a if a in places else b
+    return led(lines, gone, names, places, entries, width_px=width_px) if gone else None
 
 
 def _bridges(lines: Lines, halves: list[list[int]], longest_px: float, short_px: float) -> list[int]:
     """Edges that may be bridges, shortest first."""
-    lengths = np.array([np.hypot(*np.diff(polyline, axis=0).T).sum() for polyline in lines.polylines])
+    lengths = lengths_px(lines)
     degrees = np.array([len(some) for some in halves])[lines.ends]
     forks = (degrees == 3).any(axis=1) | (lengths <= short_px)
     may = forks & (degrees.max(axis=1) >= 3) & (lines.ends[:, 0] != lines.ends[:, 1])
@@ -85,7 +89,13 @@ def _bridges(lines: Lines, halves: list[list[int]], longest_px: float, short_px:
     return list(found[np.argsort(lengths[found], kind="stable")].tolist())
 
 
-def _half_edges(ends: Indices, count: int) -> list[list[int]]:
+def lengths_px(lines: Lines) -> Floats:
+    """Of each edge."""
+    return np.array([np.hypot(*np.diff(polyline, axis=0).T).sum() for polyline in lines.polylines])
+
+
+def half_edges(ends: Indices, count: int) -> list[list[int]]:
+    """For each vertex the half-edges that leave it: 2 i from the start of edge i, 2 i + 1 from its end."""
     halves: list[list[int]] = [[] for _ in range(count)]
     for index, (start, end) in enumerate(ends.tolist()):
         halves[start].append(2 * index)
@@ -93,7 +103,7 @@ def _half_edges(ends: Indices, count: int) -> list[list[int]]:
     return halves
 
 
-def _entry(lines: Lines, half: int, width_px: float) -> _Entry | None:
+def entry(lines: Lines, half: int, width_px: float) -> Entry | None:
     """How a half-edge (2 i from the start of edge i, 2 i + 1 from its end) leaves its vertex; None for a short one."""
     points, sound = (some[half >> 1][:: -1 if half & 1 else 1] for some in (lines.polylines, lines.sound))
     lead = round(width_px / 2 + 1.5)
@@ -104,11 +114,11 @@ def _entry(lines: Lines, half: int, width_px: float) -> _Entry | None:
     if len(stretch) < _LEAST_PX:
         return None
     middle = stretch.mean(axis=0)
-    return _Entry(middle, np.linalg.svd(stretch - middle)[2][1], int(rows[0]))
+    return Entry(middle, np.linalg.svd(stretch - middle)[2][1], int(rows[0]))
 
 
 def _place(
-    lines: Lines, bridge: int, halves: list[list[int]], entries: dict[int, _Entry | None], width_px: float
+    lines: Lines, bridge: int, halves: list[list[int]], entries: dict[int, Entry | None], width_px: float
 ) -> NDArray[np.float64] | None:
     """Where the lines at both ends of a bridge meet, None where they do not: on the bridge, or at one of its ends."""
     points, (a, b) = lines.polylines[bridge], lines.ends[bridge].tolist()
@@ -132,12 +142,12 @@ def _is_rung(lines: Lines, bridge: int, halves: list[list[int]], width_px: float
     return odd and float(np.hypot(*np.diff(points, axis=0).T).sum()) <= _RUNG_WIDTHS * width_px
 
 
-def _pass(fork: list[_Entry | None], tip: NDArray[np.float64], off_px: float) -> bool:
+def _pass(fork: list[Entry | None], tip: NDArray[np.float64], off_px: float) -> bool:
     """Whether both lines of a fork pass a point."""
     return all(entry is not None and abs(entry.normal @ (tip - entry.point)) <= off_px for entry in fork)
 
 
-def _meeting(entries: list[_Entry | None], bridge: Points, off_px: float) -> NDArray[np.float64] | None:
+def _meeting(entries: list[Entry | None], bridge: Points, off_px: float) -> NDArray[np.float64] | None:
     """Where all lines meet (least squares), None where one of them misses that point or too few are known."""
     known = [entry for entry in entries if entry is not None]
     if len(known) < max(2, len(entries) - 1):
@@ -150,17 +160,19 @@ def _meeting(entries: list[_Entry | None], bridge: Points, off_px: float) -> NDA
     return place if np.abs(normals @ place - right).max() <= off_px else None
 
 
-def _led(
+def led(
     lines: Lines,
     gone: set[int],
+    names: Indices,
     places: dict[int, NDArray[np.float64]],
-    entries: dict[int, _Entry | None],
+    entries: dict[int, Entry | None],
+    *,
     width_px: float,
 ) -> tuple[list[Points], Indices, Points]:
-    """The other edges, those that end in a bridge led from their sound ink straight to where its lines meet."""
-    names = np.arange(len(lines.vertices))
-    for a, b in (lines.ends[bridge].tolist() for bridge in gone):
-        names[b] = a if a in places else b
+    """The edges without those gone, led from their sound ink straight to the new places of their vertices.
+
+    names: (V,) the vertex that each is one with. entries: of half-edges that end in a new place.
+    """
     vertices = np.array([places.get(vertex, place) for vertex, place in enumerate(lines.vertices)])
     new = names[lines.ends]
     loops = (new[:, 0] == new[:, 1]) & (lines.ends[:, 0] != lines.ends[:, 1])
@@ -176,7 +188,7 @@ def _is_tiny(lines: Lines, index: int, width_px: float) -> bool:
 
 
 def _led_edge(
-    lines: Lines, index: int, places: dict[int, NDArray[np.float64]], entries: dict[int, _Entry | None]
+    lines: Lines, index: int, places: dict[int, NDArray[np.float64]], entries: dict[int, Entry | None]
 ) -> Points:
     points, (start, end) = lines.polylines[index], lines.ends[index].tolist()
     first, last = (entries.get(2 * index + side) for side in (0, 1))

@@ -15,6 +15,7 @@ from daemon.graph.anchors import anchored
 from daemon.graph.bends import sharpened
 from daemon.graph.crossings import Lines, unmelted
 from daemon.graph.feedback import Adaptation
+from daemon.graph.hubs import hubs
 from daemon.graph.joints import joined
 from daemon.graph.plausibility import values_at
 from daemon.graph.remains import fillings, tied
@@ -30,7 +31,7 @@ from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segment
 _SIMPLIFIED_PX = 0.04
 _ROUNDING_PX = 1e-3
 _LEAST_SPECK_PX = 3
-_ROUNDS = 3
+_ROUNDS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,7 +166,7 @@ def _on_ridge(polylines: list[Points], ends: Indices, vertices: Points, ink: _In
     """The edges in the middle of the ink, crossings that have melted into two junctions put right."""
     lines = onto_ridge(polylines, ends, vertices, ink.shades, width_px=ink.width_px)
     for _ in range(_ROUNDS):
-        better = unmelted(lines, width_px=ink.width_px)
+        better = hubs(lines, width_px=ink.width_px) or unmelted(lines, width_px=ink.width_px)
         if better is None:
             break
         lines = onto_ridge(*better, ink.shades, width_px=ink.width_px)
