@@ -39,7 +39,9 @@ def test_a_fan_of_lines_is_led_into_its_tip() -> None:
     assert distances([0.6 * line + 20 for line in lines], polylines(graph)).max() < 1.5
 
 
-@pytest.mark.parametrize(("count", "off_px", "drawn_together"), [(9, 0.5, True), (9, 5.0, False), (5, 0.0, False)])
+@pytest.mark.parametrize(
+    ("count", "off_px", "drawn_together"), [(9, 0.5, True), (9, 5.0, False), (15, 5.0, False), (5, 0.0, False)]
+)
 def test_a_knot_is_drawn_together_where_enough_lines_meet(count: int, off_px: float, drawn_together: bool) -> None:
     better = hubs(knotted(count, off_px=off_px), width_px=3.0)
     assert (better is not None) == drawn_together

@@ -54,3 +54,17 @@ def test_a_loose_end_is_tied_to_the_nearest_vertex_of_odd_degree() -> None:
     assert tied_ends.tolist() == [[1, 5]]
     assert line.tolist() == [[10, 0], [13, 0], [40, 0]]
     assert tied([vertices[[4, 5]]], ends, others, vertices, within_px=2.0)[1].tolist() == [[4, 5]]
+
+
+def test_a_vertex_takes_one_loose_end() -> None:
+    vertices = np.array([[0.0, 0], [10, 0], [13, 0], [40, 0], [13, 3]])
+    others, ends = np.array([[0, 1]]), np.array([[2, 3], [4, 3]])
+    _, tied_ends = tied([vertices[pair] for pair in ends], ends, others, vertices, within_px=4.5)
+    assert tied_ends.tolist() == [[1, 3], [4, 3]]
+
+
+def test_a_filling_that_would_hang_on_nothing_is_led_to_a_vertex_of_even_degree() -> None:
+    vertices = np.array([[0.0, 0], [10, 0], [20, 5], [10, 4], [14, 9]])
+    others, ends = np.array([[0, 1], [1, 2]]), np.array([[3, 4]])
+    _, tied_ends = tied([vertices[[3, 4]]], ends, others, vertices, within_px=5.0)
+    assert tied_ends.tolist() == [[1, 4]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from daemon.graph.interpret import interpret
@@ -60,6 +60,8 @@ def of_graph(graph: LineGraph) -> tuple[list[int], int, int]:
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(planar_graphs, wobbles)
+@example({(0, 4), (1, 5), (1, 6), (5, 10), (6, 11), (10, 11), (10, 15)}, 232).via("a ring of a few pixels in a knot")
+@example({(1, 2), (1, 6), (3, 7), (5, 6), (8, 12), (10, 14)}, 264).via("a stub into a fork")
 def test_a_planar_drawing_keeps_its_topology_and_its_ink(pairs: set[tuple[int, int]], wobble: int) -> None:
     lines = drawn_lines(pairs, wobble)
     drawn = page(lines, size=136, width_px=2)
