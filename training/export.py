@@ -159,11 +159,15 @@ def quantise(model: onnx.ModelProto, pages: CalibrationDataReader, path: Path) -
         )  # fmt: skip
 
 
+def shape_of(config: dict[str, Any]) -> Shape:
+    """The shape that a checkpoint's configuration holds."""
+    return Shape(**(config["shape"] | {"channels": tuple(config["shape"]["channels"])}))
+
+
 def load(checkpoint: Path) -> MirrorUNet:
     """The settled weights of a checkpoint. Raises FileNotFoundError, or RuntimeError when they do not fit."""
     state = torch.load(checkpoint, map_location="cpu")
-    shape = dict(state["config"]["shape"])
-    net = MirrorUNet(Shape(**(shape | {"channels": tuple(shape["channels"])})))
+    net = MirrorUNet(shape_of(state["config"]))
     net.load_state_dict({k: v.float() if v.is_floating_point() else v for k, v in state["settled"].items()})
     return net.eval()
 
@@ -179,7 +183,7 @@ def write_manifest(model: Path, checkpoint: Path) -> None:
     """NAME.json beside NAME.onnx: what the file is. training.evaluate --manifest adds how good it is."""
     state = torch.load(checkpoint, map_location="cpu")
     config, progress = state["config"], state["progress"]
-    shape = Shape(**(dict(config["shape"]) | {"channels": tuple(config["shape"]["channels"])}))
+    shape = shape_of(config)
     manifest = {
         "file": model.name,
         "sha256": hashlib.sha256(model.read_bytes()).hexdigest(),

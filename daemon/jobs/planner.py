@@ -23,10 +23,11 @@ from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
 from daemon.graph.verdicts import as_json
 from daemon.intake.decode import decode
-from daemon.jobs.folder import write_durably
+from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.pens import pen_of
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm
-from daemon.page.prepare import even_out, prepare
+from daemon.page.line_width import fit_line_width
+from daemon.page.prepare import even_out
 from daemon.program.file import program_text
 from daemon.program.gcode import write_gcode
 from daemon.program.paper import write_paper
@@ -59,7 +60,7 @@ def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *
         given = decode(source, max_megapixels=settings.intake.max_megapixels)
     with stages("page"):
         readable = even_out(given)
-        page = prepare(given)
+        page = fit_line_width(readable)
     with stages("vision"):
         segmentation = segmenter(settings.planning.threads).segment(page)
     with stages("graph"):
@@ -74,8 +75,9 @@ def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *
     with stages("report"):
         _write_pictures(folder, settings, source.name, toolpath, estimated_s, (page, segmentation, graph, on_page))
         width_px = line_width_px(readable.grey)
+        found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
         planned = planned_report(
-            page, graph, toolpath, _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px),
+            page, graph, toolpath, found,
             line_width_px=width_px, estimated_s=estimated_s, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb(),
         )  # fmt: skip
     write_durably(folder / "strokes.json", _strokes_json(drawing))
@@ -88,12 +90,12 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     """Compare the ink of a simulated machine (ink.json) with the given picture and write it into report.json."""
     ink = json.loads((folder / "ink.json").read_text())
     planned = from_json((folder / "report.json").read_text())
-    source = next(iter(sorted(folder.glob("source*"))), None)
+    source = source_of(folder)
     if source is None:
         raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
     readable = even_out(decode(source, max_megapixels=settings.intake.max_megapixels))
     drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
-    found = _fidelity_mm(readable, drawn, np.array(planned.from_px))
+    found = _fidelity_mm(readable, drawn, np.array(planned.from_px), line_width_px(readable.grey))
     executed = executed_report(planned, found, real_s=planned.real_s or 0.0)
     write_durably(folder / "report.json", to_json(executed).encode())
 
@@ -177,10 +179,10 @@ def _write_pictures(
     write_durably(folder / "drawing.svg", svg.encode())
 
 
-def _fidelity_mm(readable: PageImage, drawn_mm: list[Points], from_px: Affine) -> Fidelity:
+def _fidelity_mm(readable: PageImage, drawn_mm: list[Points], from_px: Affine, width_px: float) -> Fidelity:
     """Of lines in machine mm, against the given picture in its own pixels, light and dark put right."""
     back = invert(from_px)
-    return fidelity(readable, [place(line, back) for line in drawn_mm], line_width_px=line_width_px(readable.grey))
+    return fidelity(readable, [place(line, back) for line in drawn_mm], line_width_px=width_px)
 
 
 def _strokes_json(drawing: Drawing) -> bytes:
