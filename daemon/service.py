@@ -32,7 +32,7 @@ from daemon.program.file import load_program
 from daemon.program.gcode import lift_lines
 from daemon.status import Diary, StatusBoard
 from daemon.usb import inventory
-from firmware_protocol.grbl.ink import PenRule
+from firmware_protocol.ink import PenRule
 from firmware_protocol.session import Event
 
 LIFT_WITHIN_S = 25.0

@@ -41,7 +41,7 @@ from daemon.shapes import Affine, Drawing, LineGraph, PageImage, Points, Program
 from daemon.toolpath.place import Layout, invert, place
 from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
-from firmware_protocol.grbl.planner import line_times_s
+from firmware_protocol.grbl.simulator.planner import line_times_s
 
 Progress: TypeAlias = Callable[[str], None]
 

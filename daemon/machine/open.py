@@ -11,9 +11,9 @@ from daemon.machine.simulated import SimulatedTransport, open_simulated, simulat
 from daemon.machine.transport import Transport
 from daemon.shapes import Program
 from firmware_protocol.errors import ProtocolError
-from firmware_protocol.grbl.ink import PenRule, Polyline
-from firmware_protocol.grbl.planner import line_times_s
 from firmware_protocol.grbl.session import GrblSession
+from firmware_protocol.grbl.simulator.planner import line_times_s
+from firmware_protocol.ink import PenRule, Polyline
 from firmware_protocol.session import Ended, Event, Ready
 
 LISTEN_S = 0.05

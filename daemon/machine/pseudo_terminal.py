@@ -11,7 +11,7 @@ import tty
 from pathlib import Path
 
 from daemon.errors import SettingsError
-from firmware_protocol.grbl.simulator import GrblSimulator
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 
 _LOOK_S = 0.01
 """How often to look for a client: the kernel wakes nobody when the other end is opened."""

@@ -8,9 +8,19 @@ from collections.abc import Mapping, Sequence
 from urllib.parse import parse_qsl, urlsplit
 
 from daemon.errors import MachineFault, SettingsError
-from firmware_protocol.grbl.faults import BrownOut, DropByte, Fault, FlipByte, Hang, HardLimit, LoseOk, Timed, Unplug
-from firmware_protocol.grbl.ink import PenRule, Polyline
-from firmware_protocol.grbl.simulator import GrblSimulator
+from firmware_protocol.grbl.simulator.faults import (
+    BrownOut,
+    DropByte,
+    Fault,
+    FlipByte,
+    Hang,
+    HardLimit,
+    LoseOk,
+    Timed,
+    Unplug,
+)
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
+from firmware_protocol.ink import PenRule, Polyline
 
 _AT: Mapping[str, type[Timed]] = {"hang": Hang, "brownout": BrownOut, "limit": HardLimit, "unplug": Unplug}
 _NUMBERED: Mapping[str, type[DropByte | FlipByte | LoseOk]] = {"drop": DropByte, "flip": FlipByte, "lose_ok": LoseOk}

@@ -22,7 +22,7 @@ from daemon.report.preview import preview
 from daemon.toolpath.place import Layout
 from daemon.toolpath.plan import plan_toolpath
 from daemon.vision.segmenter import Segmenter
-from firmware_protocol.grbl.planner import line_times_s
+from firmware_protocol.grbl.simulator.planner import line_times_s
 from tests.benchmarks.pages import SIDES_PX, page
 
 ROUNDS = 3

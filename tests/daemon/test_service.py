@@ -20,7 +20,7 @@ from daemon.errors import SettingsError
 from daemon.jobs.journal import Job
 from daemon.jobs.states import State
 from daemon.service import Parts, Service, _touches, parts_of
-from firmware_protocol.grbl.ink import PenRule
+from firmware_protocol.ink import PenRule
 from tests.daemon.jobs.test_pool import PLANNER
 
 

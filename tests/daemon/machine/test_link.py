@@ -11,9 +11,9 @@ from daemon.errors import MachineFault, NoMachine
 from daemon.machine.link import Link
 from daemon.machine.simulated import SimulatedTransport
 from daemon.shapes import ProgramLine
-from firmware_protocol.grbl.faults import BrownOut, Fault, Hang, Unplug
 from firmware_protocol.grbl.session import GrblSession
-from firmware_protocol.grbl.simulator import GrblSimulator
+from firmware_protocol.grbl.simulator.faults import BrownOut, Fault, Hang, Unplug
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 from firmware_protocol.session import Accepted, Ended, Event, Status, Verdict
 
 SETTINGS = {1: 255, 110: 3000, 111: 3000, 112: 3000, 120: 200, 121: 200, 122: 200}

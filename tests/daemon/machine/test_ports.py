@@ -9,8 +9,8 @@ from daemon.machine.ports import candidates, find_grbl, is_grbl
 from daemon.machine.serial_port import Adapter
 from daemon.machine.simulated import SimulatedTransport
 from daemon.machine.transport import Transport
-from firmware_protocol.grbl.faults import Hang
-from firmware_protocol.grbl.simulator import GrblSimulator
+from firmware_protocol.grbl.simulator.faults import Hang
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 
 UNO = Adapter("/dev/ttyACM0", 0x2341, 0x0043, "1-1.1")
 CH340 = Adapter("/dev/ttyUSB0", 0x1A86, 0x7523, "1-1.2")

@@ -13,7 +13,7 @@ import pytest
 
 from daemon.errors import SettingsError
 from daemon.machine.pseudo_terminal import serve
-from firmware_protocol.grbl.simulator import GrblSimulator
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 
 
 @contextmanager

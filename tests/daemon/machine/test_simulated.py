@@ -9,8 +9,8 @@ import pytest
 
 from daemon.errors import MachineFault, SettingsError
 from daemon.machine.simulated import SimulatedTransport, open_simulated
-from firmware_protocol.grbl.faults import Unplug
-from firmware_protocol.grbl.simulator import GrblSimulator, PenRule
+from firmware_protocol.grbl.simulator.faults import Unplug
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator, PenRule
 
 
 def heard(transport: SimulatedTransport, until: float) -> bytes:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from daemon.program.file import program_text
 from daemon.program.gcode import Pen, ServoPen, ZPen, lift_lines, write_gcode
 from daemon.shapes import Points, Program, Stroke, Toolpath
-from firmware_protocol.grbl.planner import line_ends
+from firmware_protocol.grbl.simulator.planner import line_ends
 from tests.daemon.program.examples import TOOLPATH
 from tests.daemon.toolpath.strokes import polylines
 

@@ -8,7 +8,7 @@ import pytest
 
 from daemon.program.file import program_text
 from daemon.program.paper import Units, write_paper
-from firmware_protocol.grbl.planner import line_ends
+from firmware_protocol.grbl.simulator.planner import line_ends
 from tests.daemon.program.examples import TOOLPATH
 
 

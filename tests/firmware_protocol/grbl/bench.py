@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from firmware_protocol.grbl.simulator import GrblSimulator
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 
 BRISK = {1: 255, 110: 3000, 111: 3000, 112: 3000, 120: 200, 121: 200, 122: 200}
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from firmware_protocol.grbl.faults import BrownOut, DropByte, FlipByte, Hang, HardLimit, LoseOk, Unplug
 from firmware_protocol.grbl.session import GrblSession
-from firmware_protocol.grbl.simulator import GrblSimulator, PenRule
+from firmware_protocol.grbl.simulator.faults import BrownOut, DropByte, FlipByte, Hang, HardLimit, LoseOk, Unplug
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator, PenRule
 from firmware_protocol.session import Accepted, Ended, Event, NotReady, Ready, Status, Verdict
 from tests.firmware_protocol.grbl.driver import Line
 

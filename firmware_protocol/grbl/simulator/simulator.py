@@ -4,15 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from firmware_protocol.grbl import firmware
-from firmware_protocol.grbl.chip import Chip, Signal, State
-from firmware_protocol.grbl.faults import BrownOut, DropByte, Fault, FlipByte, Hang, HardLimit, LoseOk, Timed, Unplug
-from firmware_protocol.grbl.ink import Ink, PenRule, Polyline
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.modal import Memory
-from firmware_protocol.grbl.realtime import Routine, Wait
-from firmware_protocol.grbl.settings import Settings
-from firmware_protocol.grbl.wire import Outbound
+from firmware_protocol.grbl.simulator import firmware
+from firmware_protocol.grbl.simulator.chip import Chip, Signal, State
+from firmware_protocol.grbl.simulator.faults import (
+    BrownOut,
+    DropByte,
+    Fault,
+    FlipByte,
+    Hang,
+    HardLimit,
+    LoseOk,
+    Timed,
+    Unplug,
+)
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.modal import Memory
+from firmware_protocol.grbl.simulator.realtime import Routine, Wait
+from firmware_protocol.grbl.simulator.settings import Settings
+from firmware_protocol.grbl.simulator.wire import Outbound
+from firmware_protocol.ink import Ink, PenRule, Polyline
 
 _NEVER = float("inf")
 

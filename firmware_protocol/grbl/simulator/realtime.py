@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import TypeAlias
 
-from firmware_protocol.grbl import status
-from firmware_protocol.grbl.chip import Chip, Signal, State, Suspend
+from firmware_protocol.grbl.simulator import status
+from firmware_protocol.grbl.simulator.chip import Chip, Signal, State, Suspend
 
 Wait: TypeAlias = float | None
 Routine: TypeAlias = Generator[Wait, None, None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import TypeAlias
 
-from firmware_protocol.grbl.settings import Settings
+from firmware_protocol.grbl.simulator.settings import Settings
 
 Vector: TypeAlias = tuple[float, float, float]
 Steps: TypeAlias = tuple[int, int, int]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from firmware_protocol.grbl.lookahead import Move, Vector
+from firmware_protocol.grbl.simulator.lookahead import Move, Vector
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from firmware_protocol.gcode import GcodeError
-from firmware_protocol.grbl.lookahead import BLOCKS, Lookahead, Move
-from firmware_protocol.grbl.planner import line_ends, line_times_s
-from firmware_protocol.grbl.settings import Settings
+from firmware_protocol.grbl.simulator.lookahead import BLOCKS, Lookahead, Move
+from firmware_protocol.grbl.simulator.planner import line_ends, line_times_s
+from firmware_protocol.grbl.simulator.settings import Settings
 
 BRISK = {1: 255, 110: 3000, 111: 3000, 112: 3000, 120: 200, 121: 200, 122: 200}
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from firmware_protocol.grbl.chip import Chip, State, Suspend
-from firmware_protocol.grbl.lookahead import BLOCKS, Vector
-from firmware_protocol.grbl.modal import MM_PER_INCH
-from firmware_protocol.grbl.settings import fixed
+from firmware_protocol.grbl.simulator.chip import Chip, State, Suspend
+from firmware_protocol.grbl.simulator.lookahead import BLOCKS, Vector
+from firmware_protocol.grbl.simulator.modal import MM_PER_INCH
+from firmware_protocol.grbl.simulator.settings import fixed
 
 BANNER = "\r\nGrbl 1.1h ['$' for help]\r\n"
 HELP = "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]\r\n"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from firmware_protocol.grbl.actions import Move
-from firmware_protocol.grbl.chip import Chip, State
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.realtime import Routine, execute_realtime
+from firmware_protocol.grbl.simulator.actions import Move
+from firmware_protocol.grbl.simulator.chip import Chip, State
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.realtime import Routine, execute_realtime
 
 SEARCH_FACTOR = 1.5
 _NO_SWITCH = 9

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.settings import Settings, differing, fixed, float_bytes
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.settings import Settings, differing, fixed, float_bytes
 
 HERE: Vector = (0.0, 0.0, 0.0)
 G28, G30 = 6, 7

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from math import sqrt
 from typing import NamedTuple
 
-from firmware_protocol.grbl.lookahead import Block, Lookahead, Vector
+from firmware_protocol.grbl.simulator.lookahead import Block, Lookahead, Vector
 
 PREPARED_S = 0.045
 """How far ahead of the motors GRBL has cut the motion into segments: a hold or a new block acts only behind them."""

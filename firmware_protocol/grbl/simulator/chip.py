@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import Enum, Flag, auto
 
-from firmware_protocol.grbl.ink import Ink
-from firmware_protocol.grbl.interpreter import Interpreter
-from firmware_protocol.grbl.lookahead import Block, Lookahead, Vector
-from firmware_protocol.grbl.modal import HERE, Memory
-from firmware_protocol.grbl.stepper import Stepper
-from firmware_protocol.grbl.wire import Inbound
+from firmware_protocol.grbl.simulator.interpreter import Interpreter
+from firmware_protocol.grbl.simulator.lookahead import Block, Lookahead, Vector
+from firmware_protocol.grbl.simulator.modal import HERE, Memory
+from firmware_protocol.grbl.simulator.stepper import Stepper
+from firmware_protocol.grbl.simulator.wire import Inbound
+from firmware_protocol.ink import Ink
 
 EEPROM_BYTE_S = 0.0034
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import atan2, cos, floor, hypot, pi, sin, sqrt
 
 from firmware_protocol.gcode import GcodeError
-from firmware_protocol.grbl.lookahead import Move, Vector
+from firmware_protocol.grbl.simulator.lookahead import Move, Vector
 
 PLANE_AXES = {170: (0, 1, 2), 180: (2, 0, 1), 190: (1, 2, 0)}
 """G17, G18, G19 times ten: the two axes of the plane and the one across it."""

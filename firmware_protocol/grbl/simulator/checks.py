@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from firmware_protocol.gcode import GcodeError
-from firmware_protocol.grbl import arcs
-from firmware_protocol.grbl import block as groups
-from firmware_protocol.grbl.block import Block
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.modal import G28, G30, MM_PER_INCH, Memory, Modal
+from firmware_protocol.grbl.simulator import arcs
+from firmware_protocol.grbl.simulator import block as groups
+from firmware_protocol.grbl.simulator.block import Block
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.modal import G28, G30, MM_PER_INCH, Memory, Modal
 
 NO_FEED = 22
 AXES_MISSING = 26

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from math import ceil
 
-from firmware_protocol.grbl import status
-from firmware_protocol.grbl.actions import Action, Coolant, Dwell, Move, Pause, Probe, ProgramEnd, Remember, Spindle
-from firmware_protocol.grbl.chip import Chip, Signal, State
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.planner import DWELL_STEP_S
-from firmware_protocol.grbl.realtime import Routine, execute_realtime, set_overrides, start_cycle, synchronize
+from firmware_protocol.grbl.simulator import status
+from firmware_protocol.grbl.simulator.actions import (
+    Action,
+    Coolant,
+    Dwell,
+    Move,
+    Pause,
+    Probe,
+    ProgramEnd,
+    Remember,
+    Spindle,
+)
+from firmware_protocol.grbl.simulator.chip import Chip, Signal, State
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.planner import DWELL_STEP_S
+from firmware_protocol.grbl.simulator.realtime import Routine, execute_realtime, set_overrides, start_cycle, synchronize
 
 PLAN_S = 0.0003
 MOVING_FACTOR = 1.3

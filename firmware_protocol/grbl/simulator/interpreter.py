@@ -5,13 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from firmware_protocol.gcode import GcodeError
-from firmware_protocol.grbl import arcs
-from firmware_protocol.grbl import block as groups
-from firmware_protocol.grbl.actions import Action, Coolant, Dwell, Move, Pause, Probe, ProgramEnd, Remember, Spindle
-from firmware_protocol.grbl.block import Block, read_block
-from firmware_protocol.grbl.checks import ARCS, LineCheck, Plan, vector
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.modal import HERE, Memory, Modal
+from firmware_protocol.grbl.simulator import arcs
+from firmware_protocol.grbl.simulator import block as groups
+from firmware_protocol.grbl.simulator.actions import (
+    Action,
+    Coolant,
+    Dwell,
+    Move,
+    Pause,
+    Probe,
+    ProgramEnd,
+    Remember,
+    Spindle,
+)
+from firmware_protocol.grbl.simulator.block import Block, read_block
+from firmware_protocol.grbl.simulator.checks import ARCS, LineCheck, Plan, vector
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.modal import HERE, Memory, Modal
 
 JOG_WORD = 16
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from firmware_protocol.gcode import GcodeError, clean_line
-from firmware_protocol.grbl import status
-from firmware_protocol.grbl.chip import Chip, State
-from firmware_protocol.grbl.commands import Answer, run_command, run_gcode, run_startup
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.motion import slowed
-from firmware_protocol.grbl.realtime import Routine, execute_realtime, start_cycle
+from firmware_protocol.grbl.simulator import status
+from firmware_protocol.grbl.simulator.chip import Chip, State
+from firmware_protocol.grbl.simulator.commands import Answer, run_command, run_gcode, run_startup
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.motion import slowed
+from firmware_protocol.grbl.simulator.realtime import Routine, execute_realtime, start_cycle
 
 LOCKED = 9
 LINE_S = 0.0002

@@ -6,12 +6,12 @@ from collections.abc import Generator
 from typing import TypeAlias
 
 from firmware_protocol.gcode import GcodeError, read_number
-from firmware_protocol.grbl import status
-from firmware_protocol.grbl.chip import Chip, Signal, State
-from firmware_protocol.grbl.homing import home
-from firmware_protocol.grbl.lookahead import Vector
-from firmware_protocol.grbl.motion import beyond_travel, move, perform
-from firmware_protocol.grbl.realtime import Wait, synchronize
+from firmware_protocol.grbl.simulator import status
+from firmware_protocol.grbl.simulator.chip import Chip, Signal, State
+from firmware_protocol.grbl.simulator.homing import home
+from firmware_protocol.grbl.simulator.lookahead import Vector
+from firmware_protocol.grbl.simulator.motion import beyond_travel, move, perform
+from firmware_protocol.grbl.simulator.realtime import Wait, synchronize
 
 Answer: TypeAlias = Generator[Wait, None, int]
 """A routine that ends with the N of `error:N`, 0 for `ok`."""

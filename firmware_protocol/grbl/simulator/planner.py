@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from math import ceil
 
 from firmware_protocol.gcode import clean_line
-from firmware_protocol.grbl.actions import Action, Dwell, Move, Probe
-from firmware_protocol.grbl.interpreter import Interpreter
-from firmware_protocol.grbl.lookahead import Block, Lookahead, Vector
-from firmware_protocol.grbl.modal import Memory
-from firmware_protocol.grbl.settings import Settings
-from firmware_protocol.grbl.stepper import Stepper
+from firmware_protocol.grbl.simulator.actions import Action, Dwell, Move, Probe
+from firmware_protocol.grbl.simulator.interpreter import Interpreter
+from firmware_protocol.grbl.simulator.lookahead import Block, Lookahead, Vector
+from firmware_protocol.grbl.simulator.modal import Memory
+from firmware_protocol.grbl.simulator.settings import Settings
+from firmware_protocol.grbl.simulator.stepper import Stepper
 
 DWELL_STEP_S = 0.05
 """GRBL waits in steps of this length: G4 P0.01 takes one."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firmware_protocol.grbl.faults import BrownOut, DropByte, FlipByte, Hang, HardLimit, LoseOk, Unplug
-from firmware_protocol.grbl.ink import PenRule
+from firmware_protocol.grbl.simulator.faults import BrownOut, DropByte, FlipByte, Hang, HardLimit, LoseOk, Unplug
+from firmware_protocol.ink import PenRule
 from tests.firmware_protocol.grbl.bench import BRISK, talk
 
 SQUARE = ["G0Z5", "G0X10Y10", "G1Z0F900", "G1X20F1800", "Y20", "X10", "Y10", "G0Z5", "G0X0Y0"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from firmware_protocol.grbl.lookahead import Vector
-
+Vector: TypeAlias = tuple[float, float, float]
+"""x, y, z in mm."""
 Polyline: TypeAlias = list[tuple[float, float]]
 """(x, y) in mm; a single point is a dot."""
 

@@ -1,0 +1,36 @@
+"""What every simulated machine offers: bytes and the time come in, bytes and ink come out; no clock of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from firmware_protocol.ink import Polyline
+
+
+class Simulator(Protocol):
+    """The counterpart of a `Session`: behaves like the machine, its faults included."""
+
+    @property
+    def now(self) -> float:
+        """The latest time that it has been told."""
+
+    @property
+    def ink(self) -> Sequence[Polyline]:
+        """What is on the sheet: polylines of (x, y) in mm, executed, not commanded."""
+
+    @property
+    def unplugged(self) -> bool:
+        """The way to it is cut: the host sees the end of the file."""
+
+    def open(self, now: float) -> None:
+        """The host opens the way to it, with all that this does to the machine."""
+
+    def receive(self, data: bytes, now: float) -> None:
+        """Bytes leave the host at `now`."""
+
+    def advance(self, now: float) -> bytes:
+        """Let the time pass up to `now`. Returns what has reached the host and was not returned before."""
+
+    def next_time(self) -> float | None:
+        """When something will next change or be said; None: nothing more until something is received."""
