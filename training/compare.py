@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 
 from training import quickdraw
 from training.canvas import Batch, stack
@@ -78,9 +79,11 @@ def train_one(entry: Entry, batch_norm: bool, given: argparse.Namespace) -> dict
     config = Config(
         data=str(given.data), shape=shape, loss=entry.loss, omega_exponent=given.omega, plain_share=0.0,
         optimiser="rmsprop", learning_rate=given.learning_rate, images=given.images, wide_every=0, curved=0.0, seed=1,
-        validation=given.validation,
+        validation=given.validation, threads=given.threads,
     )  # fmt: skip
     run = Run(config, given.out / key_of(entry, batch_norm).replace(" ", "-"))
+    if (run.folder / "checkpoint.pt").exists():
+        run.load()
     pages = Pages(quickdraw.read([given.data], skip=HELD_OUT, limit=given.images), size_px)
     held = Pages(quickdraw.read([given.data], limit=config.validation), size_px)
     sets = {"paper": [held.page(k) for k in range(config.validation)]}
@@ -153,11 +156,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--limit", type=int, default=1000, help="test sketches")
     parser.add_argument("--validation", type=int, default=160, help="held-out sketches of the curves")
     parser.add_argument("--images", type=int, default=15000, help="the budget of each network")
-    parser.add_argument("--learning-rate", type=float, default=1e-3)
+    parser.add_argument("--learning-rate", type=float, default=3e-3)
     parser.add_argument("--omega", type=float, default=0.5, help="exponent of the class weights, 1 = inverse frequency")
     parser.add_argument("--every-s", type=float, default=60.0, help="seconds between points of the curves")
+    parser.add_argument("--threads", type=int, default=0, help="0: as many as there are cores")
     parser.add_argument("--out", type=Path, default=Path("runs/compare"))
     given = parser.parse_args(arguments)
+    if given.threads:
+        torch.set_num_threads(given.threads)
     if given.run:
         if not (given.data and given.test):
             parser.error("--run needs --data and --test")

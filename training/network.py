@@ -38,8 +38,17 @@ class Shape:
 
 
 def build_net(shape: Shape) -> nn.Module:
-    """The network of a shape, untrained."""
-    return VanillaUNet(shape) if shape.vanilla else MirrorUNet(shape)
+    """The network of a shape, untrained: weights as Ronneberger et al. 2015 (Sec. 3) begin, N(0, 2 / fan-in)."""
+    net = VanillaUNet(shape) if shape.vanilla else MirrorUNet(shape)
+    for module in net.modules():
+        if isinstance(module, nn.Conv2d | nn.ConvTranspose2d):
+            inputs = module.in_channels * module.kernel_size[0] * module.kernel_size[1]
+            if isinstance(module, nn.ConvTranspose2d):
+                inputs //= module.stride[0] * module.stride[1]
+            nn.init.normal_(module.weight, std=(2.0 / inputs) ** 0.5)
+            if module.bias is not None:
+                nn.init.zeros_(module.bias)
+    return net
 
 
 def level_sizes(shape: Shape, size_px: int) -> list[int] | None:

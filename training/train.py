@@ -13,9 +13,8 @@ import json
 import signal
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
-from typing import Any
 
 import torch
 from tqdm import tqdm
@@ -28,6 +27,10 @@ from training.run import Config, Run
 
 HELD_OUT = 1000
 """The first rows of the training files are the validation set; they are never trained on."""
+
+
+_KINDS: dict[str, type] = {"start": str, "seconds": float, "images": int}
+"""Types of the options that are unset by default."""
 
 
 def train(
@@ -95,7 +98,7 @@ def parse(arguments: Sequence[str] | None = None) -> tuple[Config, Path, bool, f
     parser.add_argument("--no-bf16", action="store_true")
     for option in fields(Config):
         if option.name not in ("data", "raw", "shape", "bf16"):
-            kind: Any = _kind(option.default)
+            kind = _KINDS.get(option.name) or type(option.default)
             parser.add_argument(f"--{option.name.replace('_', '-')}", type=kind, default=option.default)
     given = vars(parser.parse_args(arguments))
     tuples = {key: tuple(int(v) for v in given.pop(key).split(",")) for key in ("net", "channels")}
@@ -105,14 +108,8 @@ def parse(arguments: Sequence[str] | None = None) -> tuple[Config, Path, bool, f
     return Config(shape=shape, bf16=bf16, **given), folder, resume, save_every_s
 
 
-def _kind(default: Any) -> Callable[[str], Any]:
-    return float if default is None else type(default)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     config, folder, resume, save_every_s = parse(arguments)
-    if config.images is not None:
-        config = replace(config, images=int(config.images))
     if config.threads:
         torch.set_num_threads(config.threads)
     stopped: list[int] = []
