@@ -23,8 +23,10 @@ _SHIFT = 4
 
 @dataclass(frozen=True, slots=True)
 class Adaptation:
-    """The constants of Eq. 3 (Raghav et al. 2020, Sec. 5.3)."""
+    """The constants of Eqs. 2 and 3 (Raghav et al. 2020, Sec. 5.3): beta, tau, lambda and N of the adaptive method."""
 
+    beta_px: float = 1.8
+    """Full width of the strip of Eq. 2."""
     tau0: float = 0.35
     rate: float = 0.05
     rounds: int = 10

@@ -59,8 +59,8 @@ def interpret(
     it, and moves all of it onto the middle of the ink; what the network missed is found on the thinned ink, so every
     line of the page is an edge. A dot is an edge of one point from a vertex to itself. Ink of less than 3 px is dirt.
 
-    adaptation: constants of Eq. 3, the paper's own by default. A page without ink gives a graph without edges. Raises
-    ValueError when the maps differ in shape from the page or hold values that are not finite.
+    adaptation: constants of Eqs. 2 and 3, the paper's own by default. A page without ink gives a graph without edges.
+    Raises ValueError when the maps differ in shape from the page or hold values that are not finite.
     """
     if mode == "paper":
         _check(page, segmentation)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import cv2
@@ -70,10 +71,11 @@ def plausibilities(lines: Map, starts: Points, ends: Points, *, width_px: float,
 
     lines: float32 (H, W) in 0..1. starts, ends: (P, 2) in px. width_px: beta, full width of the strip. trim_px:
     length left out at both ends, where the corners channel takes over from the lines channel. Returns (P,) in 0..1;
-    samples outside the page count as 0.
+    samples outside the page count as 0. The strip is sampled at three places across, a wide one about every px.
     """
     samples = sampled(starts, ends, trim_px=trim_px)
-    across = (-width_px / 3, 0.0, width_px / 3)
+    places = max(3, math.ceil(width_px))
+    across = [width_px * (2 * place + 1 - places) / (2 * places) for place in range(places)]
     normals = samples.normals[samples.segment]
     strip = sum((values_at(lines, samples.points + offset * normals) for offset in across), np.zeros(len(normals)))
     return mean_along(samples, strip / len(across))

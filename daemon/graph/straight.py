@@ -14,8 +14,6 @@ from daemon.graph.verdicts import BEND, FILL, GAP, KEPT, PLAUSIBILITY, PRUNE, SU
 from daemon.ink import Mask
 from daemon.shapes import Points, Segmentation
 
-BETA_PX = 1.8
-"""Width of the strip of Eq. 2 (Raghav et al. 2020, Sec. 5.3, adaptive)."""
 _HOPS = 3
 _NEIGHBOURS = 100
 _BEND_PX = 1.2
@@ -30,7 +28,7 @@ def equations_alone(
     Draws most lines two or three times: an edge that passes through a vertex is as plausible as its two halves.
     """
     pairs = pairs_on_ink(vertices, ink)
-    eta = plausibilities(segmentation.lines, *_ends(vertices, pairs), width_px=BETA_PX)
+    eta = plausibilities(segmentation.lines, *_ends(vertices, pairs), width_px=adaptation.beta_px)
     chosen = select(vertices, pairs, eta, ink, adaptation, width_px=width_px)
     return pairs[chosen], eta[chosen]
 
@@ -60,7 +58,7 @@ def straight_edges(
     eta = np.full(len(pairs), np.nan)
     looked_at = (rules == KEPT) | (bends >= 0)
     response, ends = segmentation.lines + segmentation.corners, _ends(vertices, pairs[looked_at])
-    eta[looked_at] = plausibilities(response, *ends, width_px=BETA_PX, trim_px=TRIM_PX)
+    eta[looked_at] = plausibilities(response, *ends, width_px=adaptation.beta_px, trim_px=TRIM_PX)
     rules[(rules == KEPT) & ~(eta > adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds)] = PLAUSIBILITY
     left = np.flatnonzero(rules == KEPT)
     known = pairs[looked_at & ((eta > adaptation.tau0) | (bends >= 0))]

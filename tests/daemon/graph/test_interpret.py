@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from daemon.graph.feedback import Adaptation
 from daemon.graph.interpret import _simplified, interpret
 from daemon.graph.ridge import onto_ridge
 from daemon.graph.strokes import strokes
@@ -160,6 +161,13 @@ def test_the_paper_alone_draws_a_line_through_a_corner_more_than_once() -> None:
     drawn = page(CROSS)
     graph = interpret(drawn, channels(drawn, [*CROSS[0], *CROSS[1], (64, 64)]), mode="paper")
     assert length_px(polylines(graph)) == pytest.approx(2 * length_px(arrays(CROSS)), rel=0.02)
+
+
+def test_the_paper_alone_finds_nothing_with_a_strip_much_wider_than_the_line() -> None:
+    drawn = page(CROSS)
+    maps = channels(drawn, [*CROSS[0], *CROSS[1]])
+    edges = [len(interpret(drawn, maps, mode="paper", adaptation=Adaptation(beta_px=b)).edges) for b in (1.8, 30.0)]
+    assert edges == [2, 0]
 
 
 def test_channels_of_another_page_are_refused() -> None:

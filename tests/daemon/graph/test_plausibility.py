@@ -27,6 +27,10 @@ def test_a_strip_wider_than_the_line_sees_the_paper_beside_it() -> None:
     assert eta((10, 10), (29, 10), width_px=9.0) == pytest.approx(1 / 3)
 
 
+def test_a_wide_strip_is_seen_at_every_pixel_across() -> None:
+    assert eta((10, 10), (29, 10), width_px=7.0) == pytest.approx(3 / 7)
+
+
 def test_trimmed_ends_do_not_count() -> None:
     assert eta((7, 10), (32, 10)) < 0.8
     assert eta((7, 10), (32, 10), trim_px=3.0) == 1.0
