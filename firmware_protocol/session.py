@@ -59,12 +59,23 @@ class Status:
 
 
 @dataclass(frozen=True, slots=True)
+class Sent:
+    """The whole job has been handed over to a machine that does not say when it has drawn it.
+
+    drawn_in_s: how long that will take from now on, by the time model.
+    """
+
+    drawn_in_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Ended:
     """The job is over, once and for ever: no line of it is sent after this event.
 
     strokes_certain: the first n strokes are certainly drawn whole. strokes_possible: not one stroke after the first n
     has been touched. position_known: the machine still knows where its pen is. pen_lifted: the pen is known to be up.
     why: a sentence that says what happened, where (line, its text) and what to do.
+    estimated: the machine has not said so, the end was computed by the time model.
     """
 
     verdict: Verdict
@@ -73,9 +84,10 @@ class Ended:
     position_known: bool
     pen_lifted: bool
     why: str
+    estimated: bool = False
 
 
-Event: TypeAlias = Ready | NotReady | Accepted | Status | Ended
+Event: TypeAlias = Ready | NotReady | Accepted | Status | Sent | Ended
 
 
 class JobLine(Protocol):
