@@ -1,19 +1,20 @@
 """Training canvases, rendered on the fly: one number in, always the same canvas out.
 
 Two families. *Paper*: the reference rendering, half of the canvases with two or three sketches on them. *Curved*: raw
-pen paths and splines, smooth, 1 to 4 px wide, some zoomed beyond the canvas (a tile of a large page), some blurred,
-faint or grainy.
+pen paths and splines, smooth, 1 to 6 px wide, some zoomed beyond the canvas (a tile of a large page), some as a real
+page looks (training/appearance.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from training.appearance import worn
 from training.curves import curves, smooth, splines
 from training.quickdraw import Sketches
 from training.render import BORDER_PX, CANVAS_PX, Points, Sample, fit, polylines
@@ -21,6 +22,10 @@ from training.render import BORDER_PX, CANVAS_PX, Points, Sample, fit, polylines
 _SIMPLIFIED, _RAW = 0, 1
 DRAWN_BY_RULE = 0.3
 """Share of the curved sketches that are splines: rounder than what a mouse draws."""
+LINE_PX, LINE_SHARES = (1, 2, 3, 4, 5, 6), (0.13, 0.35, 0.3, 0.12, 0.06, 0.04)
+"""Widths of curved ink: a page is brought near 3 px before the network reads it (daemon/page/line_width.py)."""
+DENSE_POWER = 0.5
+"""A sketch of n points is drawn in proportion to n ** this: a few scribbles hold most of the pixels that go wrong."""
 
 Random = np.random.Generator
 
@@ -33,6 +38,13 @@ class Batch:
     label: NDArray[np.int64]
 
 
+class Source(Protocol):
+    """Where a run takes its canvases from."""
+
+    def batch(self, first: int, count: int, *, curved: float, canvas_px: int = CANVAS_PX) -> Batch:
+        """Canvases first .. first + count: the same whenever they are asked for."""
+
+
 class Canvases:
     """Canvas `index` of the run `seed`: the same whenever, and in whatever order, it is asked for."""
 
@@ -40,7 +52,7 @@ class Canvases:
         """worn: share of the curved canvases that look like a scan."""
         self._seed, self._worn = seed, worn
         self._sources = [simplified, raw or simplified]
-        self._cumulated = [np.cumsum(source.sampling_weights()) for source in self._sources]
+        self._cumulated = [np.cumsum(source.sampling_weights(dense=DENSE_POWER)) for source in self._sources]
 
     def sample(self, index: int, *, curved: float, canvas_px: int = CANVAS_PX) -> Sample:
         """`curved` is the share of canvases of the second family."""
@@ -65,9 +77,9 @@ class Canvases:
         slack_px = abs(canvas_px - sketch_px) / 2 * (1.0 if zoom > 1 else 0.8)
         shift = random.uniform(-slack_px, slack_px, 2)
         placed = [t + shift for t in fit(strokes, canvas_px, sketch_px)]
-        sample = curves(placed, canvas_px, int(random.choice([1, 2, 3, 4], p=[0.15, 0.4, 0.35, 0.1])))
-        worn = random.random() < self._worn
-        return Sample(appearance(sample.ink, random), sample.label) if worn else sample
+        line_px = int(random.choice(LINE_PX, p=LINE_SHARES))
+        sample = curves(placed, canvas_px, line_px)
+        return worn(sample, random, line_px=line_px) if random.random() < self._worn else sample
 
     def _sketches(self, source: int, random: Random) -> list[list[Points]]:
         """One, two or three sketches turned, mirrored and stretched, each in a unit box moved and scaled at random."""
@@ -89,17 +101,6 @@ class Canvases:
         turned = fit([(stroke @ matrix) for stroke in strokes], 1, random.uniform(0.6, 1.0))
         shift = random.uniform(-0.25, 0.25, 2)
         return [t + shift for t in turned]
-
-
-def appearance(ink: NDArray[np.uint8], random: Random) -> NDArray[np.uint8]:
-    """Blurred, paler or grainy, as a scan is."""
-    page = ink.astype(np.float32)
-    if random.random() < 0.7:
-        page = cv2.GaussianBlur(page, (0, 0), random.uniform(0.3, 0.8))
-    page *= random.uniform(0.6, 1.0)
-    if random.random() < 0.5:
-        page += random.normal(0.0, random.uniform(1.0, 8.0), page.shape).astype(np.float32)
-    return np.clip(page, 0, 255).astype(np.uint8)
 
 
 def stack(samples: Sequence[Sample]) -> Batch:

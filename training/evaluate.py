@@ -22,7 +22,7 @@ from daemon.vision.segmenter import MODELS, load_manifest, open_model
 from training import quickdraw
 from training.canvas import Canvases
 from training.measure import CLASSES, Confusion
-from training.render import CORNERS, Sample, reference
+from training.render import CORNERS, UNSURE, Sample, reference
 
 Label = NDArray[np.uint8]
 FOUND_WITHIN_PX = 2.0
@@ -47,7 +47,7 @@ class Score:
         for confusion in (alone, self.pooled, self.by_word.setdefault(word, Confusion())):
             confusion.add(said, sample.label)
         self.per_image.append(alone.percent()["mean"])
-        true, found = centroids(sample.label), centroids(said)
+        true, found = centroids(sample.label), centroids(np.where(sample.label == UNSURE, UNSURE, said))
         self.true_corners += len(true)
         self.said_corners += len(found)
         self.recalled += _near(true, found)
@@ -127,7 +127,7 @@ def reference_pages(files: Sequence[Path], limit: int | None) -> Iterator[tuple[
 
 
 def curved_pages(files: Sequence[Path], limit: int | None, *, worn: float) -> Iterator[tuple[str, Sample]]:
-    """Smooth curves 1 to 4 px wide (training/canvas.py), as many as there are rows."""
+    """Smooth curves 1 to 6 px wide (training/canvas.py), as many as there are rows."""
     raw = quickdraw.read(files, limit=limit)
     canvases = Canvases(raw, raw, seed=CURVED_SEED, worn=worn)
     return ((word, canvases.sample(k, curved=1.0)) for k, word in enumerate(raw.words))

@@ -15,8 +15,9 @@ class Confusion:
         self.counts = np.zeros((len(CLASSES), len(CLASSES)), np.int64)
 
     def add(self, said: NDArray[np.integer], true: NDArray[np.integer]) -> None:
-        """Labels of any one shape, integers 0..2."""
+        """Labels of any one shape, said 0..2, true 0..3: where the truth is unsure nothing is counted."""
         n = len(CLASSES)
+        said, true = said[true < n], true[true < n]
         self.counts += np.bincount(true.ravel().astype(np.int64) * n + said.ravel(), minlength=n * n).reshape(n, n)
 
     def percent(self) -> dict[str, float]:

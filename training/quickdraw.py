@@ -39,10 +39,11 @@ class Sketches:
         bounds = self.stroke_starts[first : last + 1]
         return [self.points[a:b] for a, b in itertools.pairwise(bounds)]
 
-    def sampling_weights(self, power: float = 0.5) -> NDArray[np.float64]:
-        """Probability of each sketch so that a category of n sketches is drawn in proportion to n ** power."""
+    def sampling_weights(self, power: float = 0.5, *, dense: float = 0.0) -> NDArray[np.float64]:
+        """Probability of each sketch: n sketches of a category share n ** power, each by its points ** dense."""
         count = Counter(self.words)
-        weights = np.array([count[word] ** (power - 1.0) for word in self.words])
+        points = np.diff(self.stroke_starts[self.sketch_starts])
+        weights = np.array([count[word] ** (power - 1.0) for word in self.words]) * points**dense
         return weights / weights.sum()
 
 
@@ -55,26 +56,31 @@ def ndjson_files(path: Path) -> list[Path]:
 
 
 def read(paths: Sequence[Path], *, skip: int = 0, limit: int | None = None) -> Sketches:
-    """Rows `skip` ... `skip + limit` of all files together. Raises ValueError when not one row is readable."""
+    """Rows `skip` ... `skip + limit` of all files together; bad rows are counted and left out.
+
+    Raises ValueError with its name for a category (a file of a folder) of which not one row is readable.
+    """
     points: list[NDArray[np.float32]] = []
     strokes_of, words, bad = [], [], 0
-    for number, line in enumerate(_lines(paths)):
+    good_of = Counter[Path]()
+    for number, (file, line) in enumerate(_lines(paths)):
         if number < skip:
             continue
         if limit is not None and number >= skip + limit:
             break
+        good_of[file] += 0
         try:
             word, strokes = _row(line)
         except (ValueError, KeyError, TypeError, IndexError):
             bad += 1
             continue
+        good_of[file] += 1
         points += strokes
         strokes_of.append(len(strokes))
         words.append(word)
-    if not words:
-        raise ValueError(
-            f"no readable sketch in {', '.join(map(str, paths))} ({bad} bad rows): is it Quick, Draw! ndjson?"
-        )
+    empty = [file.name for file, good in good_of.items() if not good] or ([] if words else [str(p) for p in paths])
+    if empty:
+        raise ValueError(f"no readable sketch in {', '.join(empty)} ({bad} bad rows): is it Quick, Draw! ndjson?")
     return Sketches(
         points=np.concatenate(points),
         stroke_starts=np.concatenate([[0], np.cumsum([len(p) for p in points])]),
@@ -84,11 +90,11 @@ def read(paths: Sequence[Path], *, skip: int = 0, limit: int | None = None) -> S
     )
 
 
-def _lines(paths: Sequence[Path]) -> Iterator[bytes]:
+def _lines(paths: Sequence[Path]) -> Iterator[tuple[Path, bytes]]:
     for path in paths:
         for file in ndjson_files(path):
             with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
-                yield from stream
+                yield from zip(itertools.repeat(file), stream, strict=False)
 
 
 def _row(line: bytes) -> tuple[str, Strokes]:

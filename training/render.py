@@ -18,7 +18,8 @@ CANVAS_PX = 221
 SKETCH_PX = 188
 BORDER_PX = (CANVAS_PX - SKETCH_PX) / 2
 LINE_PX = 2
-BACKGROUND, LINES, CORNERS = 0, 1, 2
+BACKGROUND, LINES, CORNERS, UNSURE = 0, 1, 2, 3
+"""UNSURE is no class: ink that may or may not be called a corner; it teaches nothing and is counted nowhere."""
 _SHIFT = 4
 """Sub-pixel bits of OpenCV's drawing functions."""
 _ROUNDING_PX = 1e-3
@@ -29,7 +30,7 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sample:
-    """ink: uint8 (S, S), 255 = ink. label: uint8 (S, S) of BACKGROUND, LINES, CORNERS."""
+    """ink: uint8 (S, S), 255 = ink. label: uint8 (S, S) of BACKGROUND, LINES, CORNERS; UNSURE on curved ink only."""
 
     ink: NDArray[np.uint8]
     label: NDArray[np.uint8]
@@ -77,6 +78,11 @@ def label(ink: NDArray[np.uint8], corners: NDArray[np.int32]) -> NDArray[np.uint
 
 def crossings(strokes: Sequence[Points]) -> Points:
     """Where two segments meet, end points that touch a segment included: (N, 2); parallel overlaps by their ends."""
+    return meetings(strokes)[0]
+
+
+def meetings(strokes: Sequence[Points]) -> tuple[Points, NDArray[np.float64]]:
+    """The crossings, (N, 2), and the sine of the angle at which each pair of segments meets, (N,)."""
     a = np.concatenate([s[:-1] for s in strokes])
     b = np.concatenate([s[1:] for s in strokes])
     # Segments that follow each other meet in a vertex, which is no crossing: a gap in the numbering ends each stroke.
@@ -92,7 +98,8 @@ def crossings(strokes: Sequence[Points]) -> Points:
     tiny = 1e-9
     meet = (cross != 0) & (t >= -tiny) & (t <= 1 + tiny) & (u >= -tiny) & (u <= 1 + tiny)
     # Parallel segments that overlap do so from an end of one of them, which is a vertex, hence a corner, already.
-    return p[meet] + t[meet, None] * r[meet]
+    lengths = np.hypot(*r[meet].T) * np.hypot(*s[meet].T)
+    return p[meet] + t[meet, None] * r[meet], np.abs(cross[meet]) / np.maximum(lengths, tiny)
 
 
 def _near_pairs(a: Points, b: Points, number: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

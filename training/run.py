@@ -9,7 +9,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from training.canvas import Batch, Canvases, stack
+from training.canvas import Batch, Source, stack
 from training.loss import LOSSES, omega
 from training.measure import Confusion
 from training.muon import Muon
@@ -126,7 +126,7 @@ class Run:
         self.progress.images += len(batch.ink)
         return float(loss.detach())
 
-    def settle(self, canvases: Canvases) -> nn.Module:
+    def settle(self, canvases: Source) -> nn.Module:
         """The averaged weights with normalisation statistics of their own.
 
         Statistics gathered during training lag behind weights that move fast: with Muon they cost 30 points of IoU.

@@ -20,7 +20,7 @@ import torch
 from tqdm import tqdm
 
 from training import quickdraw
-from training.canvas import Batch, Canvases
+from training.canvas import Batch, Canvases, Source
 from training.network import Shape
 from training.render import Sample, reference
 from training.run import Config, Run
@@ -34,7 +34,7 @@ _KINDS: dict[str, type] = {"start": str, "seconds": float, "images": int}
 
 
 def train(
-    run: Run, canvases: Canvases, sets: dict[str, list[Sample]], *, save_every_s: float, stop: Callable[[], bool]
+    run: Run, canvases: Source, sets: dict[str, list[Sample]], *, save_every_s: float, stop: Callable[[], bool]
 ) -> None:
     """Until the budget is spent or `stop()` says so; validates and saves every save_every_s seconds and at the end."""
     config, saved = run.config, time.monotonic()
@@ -54,7 +54,7 @@ def train(
     _validated(run, canvases, sets)
 
 
-def next_batch(run: Run, canvases: Canvases) -> Batch:
+def next_batch(run: Run, canvases: Source) -> Batch:
     """Every wide_every-th batch is one of larger canvases, so that the network knows pages of more than one size."""
     config, first = run.config, run.progress.images
     run.progress.batches += 1
@@ -63,7 +63,7 @@ def next_batch(run: Run, canvases: Canvases) -> Batch:
     return canvases.batch(first, config.batch, curved=config.curved)
 
 
-def _validated(run: Run, canvases: Canvases, sets: dict[str, list[Sample]]) -> dict[str, str]:
+def _validated(run: Run, canvases: Source, sets: dict[str, list[Sample]]) -> dict[str, str]:
     settled = run.settle(canvases)
     figures = run.validate(settled, sets)
     run.save(settled)

@@ -1,15 +1,18 @@
 """XENT and MWX against a hand-computed page of 3 x 3 pixels."""
 
 import math
+from collections.abc import Callable
+from typing import TypeAlias
 
 import pytest
 import torch
 
-from training.loss import mwx, omega, xent
+from training.loss import mwx, omega, plain, xent
 
 pytestmark = pytest.mark.training
 
-WEIGHTS = torch.tensor([1.0, 4.0, 16.0])
+Loss: TypeAlias = Callable[[torch.Tensor, torch.Tensor, torch.Tensor], torch.Tensor]
+WEIGHTS = torch.tensor([1.0, 4.0, 16.0, 0.0])
 LABEL = torch.tensor([[[0, 0, 1], [0, 1, 2], [0, 0, 1]]])
 
 
@@ -49,6 +52,18 @@ def test_mwx_weighs_a_missed_corner_like_a_corner() -> None:
     assert mwx(logits_saying(said), LABEL, WEIGHTS).item() == pytest.approx((16 * UNSURE + (every - 16) * SURE) / every)
 
 
+@pytest.mark.parametrize("loss", [xent, mwx, plain])
+def test_what_is_unsure_teaches_nothing(loss: Loss) -> None:
+    unsure = LABEL.clone()
+    unsure[0, 0, 0] = 3
+    right, wrong = logits_saying(LABEL[0].tolist()), logits_saying([[2, 0, 1], [0, 1, 2], [0, 0, 1]])
+    assert loss(right, unsure, WEIGHTS).item() == pytest.approx(loss(wrong, unsure, WEIGHTS).item())
+    wrong.requires_grad_()
+    loss(wrong, unsure, WEIGHTS).backward()
+    assert wrong.grad is not None
+    assert not wrong.grad[0, :, 0, 0].any()
+
+
 def test_omega_with_exponent_one_is_inverse_frequency() -> None:
     weights = omega(1.0, (0.9, 0.09, 0.01))
-    assert torch.allclose(weights, torch.tensor([1.0, 10.0, 90.0]))
+    assert torch.allclose(weights, torch.tensor([1.0, 10.0, 90.0, 0.0]))

@@ -65,6 +65,22 @@ def test_nothing_readable_says_so(tmp_path: Path) -> None:
         quickdraw.read([tmp_path / "nowhere"])
 
 
+def test_a_category_without_a_row_is_named(tmp_path: Path) -> None:
+    """A folder of Google's files, one a category: a truncated or empty-handed one must not vanish in the rest."""
+    (tmp_path / "cat.ndjson").write_text("\n".join(GOOD))
+    (tmp_path / "owl.ndjson").write_text("<html>not found</html>\n")
+    with pytest.raises(ValueError, match=r"no readable sketch in owl\.ndjson"):
+        quickdraw.read([tmp_path])
+
+
+def test_dense_sketches_are_drawn_more_often(tmp_path: Path) -> None:
+    (tmp_path / "a.ndjson").write_text(
+        "\n".join([row("cat", [[0, 9], [0, 9]]), row("cat", [[*range(8)], [*range(8)]])])
+    )
+    weights = quickdraw.read([tmp_path / "a.ndjson"]).sampling_weights(dense=0.5)
+    assert weights[1] == pytest.approx(2 * weights[0])
+
+
 def test_rare_categories_are_drawn_more_often_than_their_share(tmp_path: Path) -> None:
     (tmp_path / "a.ndjson").write_text("\n".join([*GOOD[:2] * 8, GOOD[2]]))
     weights = quickdraw.read([tmp_path / "a.ndjson"]).sampling_weights()

@@ -1,10 +1,13 @@
 """The reference rendering and the curved canvases, on strokes whose corners are known."""
 
+import cv2
 import numpy as np
+import pytest
 
+from training.appearance import worn
 from training.curves import curves, resample, sharp_bends, smooth
 from training.evaluate import centroids
-from training.render import BACKGROUND, CORNERS, LINES, crossings, fit, polylines, reference
+from training.render import BACKGROUND, CORNERS, LINES, UNSURE, crossings, fit, polylines, reference
 
 
 def stroke(*points: tuple[float, float]) -> np.ndarray:
@@ -75,6 +78,50 @@ def test_a_sharp_bend_is_found_where_it_is() -> None:
     bent = resample(stroke((0, 0), (30, 0), (30, 30)), 1.0)
     (at,) = sharp_bends(bent)
     assert np.allclose(bent[at], (30, 0), atol=1.0)
+
+
+def bent(degrees: float) -> np.ndarray:
+    turn = np.radians(degrees)
+    return stroke((40, 110), (110, 110), (110 + 60 * np.cos(turn), 110 + 60 * np.sin(turn)))
+
+
+@pytest.mark.parametrize(("degrees", "there"), [(20, LINES), (50, UNSURE), (80, CORNERS)])
+def test_a_bend_is_a_corner_unsure_or_none(degrees: float, there: int) -> None:
+    assert curves([bent(degrees)], 221, 2).label[110, 110] == there
+
+
+@pytest.mark.parametrize(("degrees", "there"), [(12, UNSURE), (50, CORNERS)])
+def test_lines_that_cross_flatly_have_no_place_where_they_do(degrees: float, there: int) -> None:
+    turn = np.radians(degrees)
+    arm = 80 * np.array([np.cos(turn), np.sin(turn)])
+    label = curves([stroke((30, 110), (190, 110)), stroke(110 - arm, 110 + arm)], 221, 2).label
+    assert label[110, 110] == there
+    assert label[110, 30] == CORNERS
+
+
+def test_an_end_that_runs_along_another_line_is_unsure_and_one_that_stands_on_it_a_corner() -> None:
+    along = stroke((30, 110), (190, 110))
+    assert curves([along, stroke((80, 111), (120, 111), (190, 160))], 221, 3).label[110, 80] == UNSURE
+    assert curves([along, stroke((110, 111), (110, 190))], 221, 3).label[110, 110] == CORNERS
+
+
+def test_nothing_is_sure_in_a_blot() -> None:
+    zigzag = stroke(*((x, y) for x in range(80, 120, 2) for y in ((80, 120) if x % 4 else (120, 80))))
+    label = curves([zigzag, stroke((20, 20), (60, 20))], 221, 2).label
+    assert (label[90:110, 90:110] == UNSURE).all()
+    assert label[20, 20] == CORNERS
+
+
+def test_a_worn_page_still_holds_the_drawing() -> None:
+    """Ink stays dark where it was drawn, paper stays light, and the same numbers give the same page."""
+    clean = curves([resample(bent(80), 1.0)], 221, 3)
+    drawn = cv2.erode((clean.ink > 127).astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+    far = cv2.dilate((clean.ink > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) == 0
+    for seed in range(40):
+        page = worn(clean, np.random.default_rng(seed), line_px=3)
+        assert page.ink[drawn].mean() > page.ink[far].mean() + 63
+        assert (page.label[clean.label > 0] == clean.label[clean.label > 0]).all()
+        assert (worn(clean, np.random.default_rng(seed), line_px=3).ink == page.ink).all()
 
 
 def test_smoothing_keeps_both_ends() -> None:
