@@ -25,6 +25,7 @@ class Verdict(Enum):
     ALARM = "alarm"
     RESTARTED = "restarted"
     SILENT = "silent"
+    ASTRAY = "astray"
     UNPLUGGED = "unplugged"
 
 
@@ -69,6 +70,46 @@ class Sent:
 
 
 @dataclass(frozen=True, slots=True)
+class Finding:
+    """Something about the machine that a drawing wants otherwise.
+
+    about: what was looked at, such as "$13" or "travel". command: the line that mends it; "" where none does.
+    blocks: the drawing would come out wrong, so it is not begun.
+    """
+
+    about: str
+    why: str
+    command: str = ""
+    blocks: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A finding about the job that is being begun; `mended`: the session has set it right, as it is allowed to."""
+
+    finding: Finding
+    mended: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Paused:
+    """The machine stands with the pen up, the job goes on with `resume`. stroke: the one that is drawn next.
+
+    None: no stroke is left. at_mm: where the running stroke was cut; None after a whole one.
+    """
+
+    stroke: int | None
+    at_mm: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """The machine waits for a person in the middle of a job: `why` says what happened, and what to press."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class Ended:
     """The job is over, once and for ever: no line of it is sent after this event.
 
@@ -87,7 +128,7 @@ class Ended:
     estimated: bool = False
 
 
-Event: TypeAlias = Ready | NotReady | Accepted | Status | Sent | Ended
+Event: TypeAlias = Ready | NotReady | Accepted | Status | Sent | Ended | Found | Paused | Waiting
 
 
 class JobLine(Protocol):
@@ -123,3 +164,13 @@ class Session(Protocol):
 
     def unplugged(self, now: float) -> list[Event]:
         """The port is gone: what that means for the job."""
+
+
+class PausableSession(Session, Protocol):
+    """A session that can stand still in the middle of a job and go on."""
+
+    def pause(self, now: float, *, at_once: bool = False) -> None:
+        """Stand still with the pen up, at the end of the running stroke or at once; `Paused` is said when it does."""
+
+    def resume(self, now: float) -> None:
+        """Go on after `Paused`, or tell a machine that is `Waiting` to. Raises LocalProtocolError when neither is."""
