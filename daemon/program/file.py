@@ -11,7 +11,8 @@ from daemon.shapes import Program, ProgramLine
 _HEAD = "(linedrawd: {strokes} strokes)"
 _STROKE = "(stroke {index})"
 _NO_STROKE = "(no stroke)"
-_COMMENT = re.compile(r"\([^)]*\)|;.*")
+_COMMENT = re.compile(r"\([^)]*\)|;(?!\$PATH=).*")
+"""`;$PATH=` belongs to the head of a Siemens program: it looks like a comment and is none."""
 
 
 def program_text(program: Program) -> str:
