@@ -13,27 +13,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from daemon import __version__
-from daemon.config import Machine, Settings, ZPenSettings
+from daemon.config import Settings
 from daemon.control import ControlServer, Order
 from daemon.errors import SettingsError
 from daemon.intake.inbox import Inbox, InboxWatch, readable
 from daemon.jobs.desk import Desk
-from daemon.jobs.drawing import Drawing, OpenMachine
+from daemon.jobs.devices import opened
+from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
 from daemon.jobs.journal import Journal
-from daemon.jobs.pens import pen_of
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
-from daemon.machine.open import check_url, open_machine
-from daemon.machine.ports import find_grbl
-from daemon.machine.serial_port import adapters
+from daemon.machine.open import check_url
 from daemon.program.file import load_program
-from daemon.program.gcode import lift_lines
 from daemon.status import Diary, StatusBoard
-from daemon.usb import inventory
-from firmware_protocol.ink import PenRule
-from firmware_protocol.session import Event
 
 LIFT_WITHIN_S = 25.0
 """How long an end waits for the pen to be lifted; systemd kills after 30 s."""
@@ -75,33 +69,13 @@ def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None =
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
         drawing = Drawing(
             desk,
-            opened=lambda hear: _opened(settings.machines[name], hear),
+            opened=lambda hear: opened(settings.machines[name], hear),
             load=load_program,
             measure=lambda folder: pool.measure(folder, name),
         )
         at_end.callback(drawing.close)
         planning = Planning(desk, pool, name)
         yield Parts(desk, pool, planning, drawing, Runner(desk, pool, planning, drawing), board, diary)
-
-
-def _opened(machine: Machine, hear: Callable[[Event], None]) -> OpenMachine:
-    return open_machine(
-        machine.url if machine.url != "auto" else find_grbl(adapters(), on_usb=inventory().ids),
-        baud=machine.baud,
-        flow=machine.flow,
-        lift=lift_lines(pen_of(machine)),
-        lift_after_restart=machine.lift_after_restart,
-        home=machine.origin == "homed",
-        touches=_touches(machine),
-        heard=hear,
-    )
-
-
-def _touches(machine: Machine) -> PenRule:
-    pen = machine.pen
-    if isinstance(pen, ZPenSettings):
-        return PenRule(down_at_mm=pen.down_mm, up_is_minus=pen.up_mm < pen.down_mm)
-    return PenRule(down_s=pen.down_s, up_s=pen.up_s)
 
 
 @contextmanager

@@ -26,13 +26,13 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
         "--device",
         choices=["grbl", "emco", "dobot", "sim"],
         default=argparse.SUPPRESS,
-        help="sim is a simulated grbl; emco and dobot come with a later version",
+        help="sim is a simulated grbl; a simulated other one has the port sim://emco or sim://dobot",
     )
     group.add_argument(
         "--port",
         metavar="URL",
         default=argparse.SUPPRESS,
-        help="auto, serial:///dev/ttyUSB0, tcp://HOST:PORT, sim://grbl; a bare path is serial",
+        help="auto, serial:///dev/ttyUSB0, tcp://HOST:PORT, file:///FOLDER (emco), sim://grbl; a bare path is serial",
     )
     group.add_argument("-v", "--verbose", action="store_true", default=argparse.SUPPRESS, help="show the log on stderr")
 

@@ -23,25 +23,22 @@ from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
 from daemon.graph.verdicts import as_json
 from daemon.intake.decode import decode
+from daemon.jobs.devices import program_of, seconds_of
 from daemon.jobs.folder import source_of, write_durably
-from daemon.jobs.pens import pen_of
-from daemon.jobs.sheet import box_origin_mm, reach_low_mm
+from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.page.line_width import fit_line_width
 from daemon.page.prepare import even_out
 from daemon.program.file import program_text
-from daemon.program.gcode import write_gcode
-from daemon.program.paper import write_paper
 from daemon.program.svg import write_svg
 from daemon.report import canvas
 from daemon.report.explain import explain
 from daemon.report.fidelity import Fidelity, fidelity, line_width_px
 from daemon.report.preview import preview
 from daemon.report.report import executed_report, from_json, planned_report, to_json
-from daemon.shapes import Affine, Drawing, LineGraph, PageImage, Points, Program, Segmentation, Stroke, Toolpath
+from daemon.shapes import Affine, Drawing, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
 from daemon.toolpath.place import Layout, invert, place
 from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
-from firmware_protocol.grbl.simulator.planner import line_times_s
 
 Progress: TypeAlias = Callable[[str], None]
 
@@ -70,8 +67,8 @@ def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *
     with stages("toolpath"):
         toolpath = _toolpath(drawing, page, settings.sheet, settings.machines[machine])
     with stages("program"):
-        program = _program(toolpath, settings.machines[machine])
-        estimated_s = line_times_s([line.text for line in program.lines])[-1]
+        program = program_of(toolpath, settings.machines[machine])
+        estimated_s = seconds_of(program, settings.machines[machine])
     with stages("report"):
         _write_pictures(folder, settings, source.name, toolpath, estimated_s, (page, segmentation, graph, on_page))
         width_px = line_width_px(readable.grey)
@@ -151,15 +148,9 @@ def _toolpath(drawing: Drawing, page: PageImage, sheet: Sheet, machine: Machine)
         precision=Precision(sheet.error_mm, _ERROR_PX * given_px, machine.resolution_mm),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,
-        reach_mm=machine.reach_mm,
+        reach_mm=reach_mm(machine),
         reach_low_mm=reach_low_mm(sheet, machine),
     )
-
-
-def _program(toolpath: Toolpath, machine: Machine) -> Program:
-    if machine.dialect == "paper":
-        return write_paper(toolpath, units=machine.units, draw_mm_s=machine.draw_mm_s)
-    return write_gcode(toolpath, pen=pen_of(machine), draw_mm_s=machine.draw_mm_s)
 
 
 def _write_pictures(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from daemon.config import Machine, Sheet
+from daemon.config import DobotMachine, EmcoMachine, GrblMachine, Machine, Sheet
+
+_BEYOND_EVERY_ARM_MM = 1000.0
+"""An arm reaches no rectangle: program/dobot.py checks each point by its joints."""
 
 
 def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
     """The box's lower left corner in machine mm. The sheet's corner is where the pen stands or, homed, at origin_mm."""
-    corner_mm = machine.origin_mm if machine.origin == "homed" else (0.0, 0.0)
+    corner_mm = machine.origin_mm if isinstance(machine, GrblMachine) and machine.origin == "homed" else (0.0, 0.0)
     x_mm, y_mm = sheet.box_origin_mm
     if sheet.corner.endswith("right"):
         x_mm = -x_mm - sheet.box_mm[0]
@@ -16,10 +19,19 @@ def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
     return corner_mm[0] + x_mm, corner_mm[1] + y_mm
 
 
+def reach_mm(machine: Machine) -> tuple[float, float]:
+    """Width and height of the rectangle that the machine goes to."""
+    if isinstance(machine, GrblMachine | EmcoMachine):
+        return machine.reach_mm
+    return 2 * _BEYOND_EVERY_ARM_MM, 2 * _BEYOND_EVERY_ARM_MM
+
+
 def reach_low_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
     """The smallest x and y the machine goes to: from a pen put on the sheet's corner the reach runs into the sheet."""
-    width_mm, height_mm = machine.reach_mm
-    if machine.origin == "homed":
+    if isinstance(machine, DobotMachine):
+        return -_BEYOND_EVERY_ARM_MM, -_BEYOND_EVERY_ARM_MM
+    width_mm, height_mm = reach_mm(machine)
+    if isinstance(machine, GrblMachine) and machine.origin == "homed":
         # Homed, GRBL counts from minus its travel to nought, unless it has been given a work offset.
         x_mm, y_mm = machine.origin_mm
         return -width_mm if x_mm < 0 else 0.0, -height_mm if y_mm < 0 else 0.0

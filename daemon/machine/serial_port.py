@@ -35,6 +35,17 @@ class Adapter:
     place: str
 
 
+@dataclass(frozen=True, slots=True)
+class Framing:
+    """How a serial port is set up. dtr: False keeps DTR and RTS low from before the port is opened: no reset."""
+
+    baud: int = 115200
+    data_bits: int = 8
+    parity: str = "N"
+    stop_bits: int = 1
+    dtr: bool = True
+
+
 class _Wire(Protocol):
     """What a serial port and a socket have in common."""
 
@@ -43,17 +54,18 @@ class _Wire(Protocol):
     def close(self) -> None: ...
 
 
-def open_serial(url: str, *, baud: int = 115200, write_within_s: float = WRITE_WITHIN_S) -> Transport:
+def open_serial(url: str, *, framing: Framing = Framing(), write_within_s: float = WRITE_WITHIN_S) -> Transport:
     """Open a port for this process alone. url: serial:///dev/ttyUSB0, a bare path, or tcp://host:port.
 
-    Opening a serial port resets most boards (DTR). write_within_s: a port that takes no byte for so long is a fault.
+    Opening a serial port resets most boards, unless `framing` says no to DTR. write_within_s: a port that takes no
+    byte for so long is a fault.
     Raises NoMachine when it is missing, in use or not allowed.
     """
     parts = urlsplit(url)
     if parts.scheme == "tcp":
         return _Port(url, _connect(url), write_within_s)
     if parts.scheme in {"serial", ""} and parts.path:
-        return _Port(parts.path, _open(parts.path, baud), write_within_s)
+        return _Port(parts.path, _open(parts.path, framing), write_within_s)
     raise NoMachine(f"{url} is no port: give serial:///dev/ttyUSB0, a path, or tcp://host:port")
 
 
@@ -64,14 +76,26 @@ def adapters() -> tuple[Adapter, ...]:
     return tuple(sorted(listed, key=lambda adapter: adapter.path))
 
 
-def _open(path: str, baud: int) -> _Wire:
+def _open(path: str, framing: Framing) -> _Wire:
     try:
-        port: _Wire = serial.Serial(path, baudrate=baud, timeout=0, exclusive=True)
+        port = serial.Serial(
+            baudrate=framing.baud,
+            bytesize=framing.data_bits,
+            parity=framing.parity,
+            stopbits=framing.stop_bits,
+            timeout=0,
+            exclusive=True,
+        )
+        if not framing.dtr:
+            port.dtr = port.rts = False
+        port.port = path
+        port.open()
     except serial.SerialException as fault:
         raise NoMachine(why_not_opened(path, fault.errno)) from fault
     except ValueError as fault:
-        raise NoMachine(f"{path} does not do {baud} baud: set another baud rate") from fault
-    return port
+        raise NoMachine(f"{path} does not do {framing.baud} baud: set another baud rate") from fault
+    wire: _Wire = port
+    return wire
 
 
 def why_not_opened(path: str, number: int | None) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from urllib.parse import parse_qsl, urlsplit
 
 from daemon.errors import MachineFault, SettingsError
@@ -21,10 +21,13 @@ from firmware_protocol.grbl.simulator.faults import (
 )
 from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 from firmware_protocol.ink import PenRule, Polyline
+from firmware_protocol.simulator import Simulator
 
 _AT: Mapping[str, type[Timed]] = {"hang": Hang, "brownout": BrownOut, "limit": HardLimit, "unplug": Unplug}
 _NUMBERED: Mapping[str, type[DropByte | FlipByte | LoseOk]] = {"drop": DropByte, "flip": FlipByte, "lose_ok": LoseOk}
 _OTHER = ("speed", "boot_s", "pen_z", "pen_s", "switches")
+OTHERS: Mapping[str, Callable[[Mapping[str, str]], Simulator]] = {}
+"""Simulated machines besides GRBL, by the name in `sim://NAME`."""
 _EXAMPLE = "sim://grbl?speed=1&pen_z=0&110=3000&hang=2.5"
 
 
@@ -34,7 +37,7 @@ class SimulatedTransport:
     speed: 0 lets the clock jump to the next event, 1 keeps it at real time, 10 makes it ten times as fast.
     """
 
-    def __init__(self, simulator: GrblSimulator, *, speed: float = 0.0, name: str = "sim://grbl") -> None:
+    def __init__(self, simulator: Simulator, *, speed: float = 0.0, name: str = "sim://grbl") -> None:
         self.simulator, self.speed, self._name = simulator, speed, name
         self._now = self._began_s = simulator.now
         self._started_s = time.monotonic()
@@ -47,7 +50,7 @@ class SimulatedTransport:
         return self._name
 
     @property
-    def ink(self) -> list[Polyline]:
+    def ink(self) -> Sequence[Polyline]:
         """What is on the sheet: polylines of (x, y) in mm."""
         return self.simulator.ink
 
@@ -98,18 +101,33 @@ class SimulatedTransport:
 def open_simulated(
     url: str, *, settings: Mapping[int, float] | None = None, pen: PenRule | None = None, faults: Sequence[Fault] = ()
 ) -> SimulatedTransport:
-    """Switch the machine that `simulator_of` describes on and open the way to it; `speed` in the query is its speed.
+    """Switch the machine that `url` describes on and open the way to it; `speed` in the query is its speed.
 
+    settings, pen, faults: of a simulated GRBL, as `simulator_of` takes them.
     Raises SettingsError for a URL that cannot be understood.
     """
-    simulator = simulator_of(url, settings=settings, pen=pen, faults=faults)
-    speed = dict(parse_qsl(urlsplit(url).query)).get("speed", "0")
+    parts = urlsplit(url)
+    speed = dict(parse_qsl(parts.query)).get("speed", "0")
+    if parts.netloc in OTHERS:
+        simulator = other_simulator(url)
+    else:
+        simulator = simulator_of(url, settings=settings, pen=pen, faults=faults)
     try:
         return SimulatedTransport(simulator, speed=float(speed), name=url)
     except ValueError as error:
         raise SettingsError(
             f"{url}: speed is {speed}: write a number such as 1, or 0 for as fast as possible"
         ) from error
+
+
+def other_simulator(url: str) -> Simulator:
+    """The simulated machine of another kind than GRBL. Raises SettingsError for options that it does not know."""
+    parts = urlsplit(url)
+    options = {key: value for key, value in parse_qsl(parts.query, keep_blank_values=True) if key != "speed"}
+    try:
+        return OTHERS[parts.netloc](options)
+    except ValueError as error:
+        raise SettingsError(f"{url}: {error}: correct the options behind the question mark") from error
 
 
 def simulator_of(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from daemon.config import Options, ServoPenSettings, Settings, load_settings
+from daemon.config import DobotMachine, EmcoMachine, GrblMachine, Options, ServoPenSettings, Settings, load_settings
 from daemon.errors import SettingsError
 
 
@@ -34,7 +34,24 @@ def settings(text: str, folder: Path, *, device: str | None = None, port: str | 
         ("[sheet]\nerror_mm = inf", "[sheet] error_mm: Input should be a finite number"),
         ("[machines.left]\nurl = 'usb:3'", "use auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"),
         ("[machines.left]\nurl = 'sim://emco'", "use sim://grbl"),
-        ("[machines.left]\ndevice = 'emco'", "device 'emco' comes with a later version"),
+        (
+            "[machines.left]\ndevice = 'laser'",
+            "[machines] left: a machine is a section with device = 'grbl', 'emco' or",
+        ),
+        ("[machines.left]\ndevice = 'emco'\nflow = 'line'", "[machines.left] flow is unknown: known are device, url"),
+        ("[machines.a]\ndevice = 'emco'\nlink = 'blocks'\nurl = 'file:///d'", "link = 'blocks' does not go with url"),
+        ("[machines.a]\ndevice = 'emco'\nhome = 'job'", "an EMCO is homed at its control"),
+        ("[machines.a]\ndevice = 'emco'\nurl = 'sim://dobot'", "is not simulated for device 'emco': use sim://emco"),
+        ("[machines.a]\ndevice = 'emco'\npen = {kind = 'servo'}", "[machines.a.pen] kind: Input should be 'z'"),
+        (
+            "[machines.a]\ndevice = 'dobot'\nurl = 'file:///x'",
+            "no way to a machine of device 'dobot': use auto, serial",
+        ),
+        (
+            "[machines.a]\ndevice = 'dobot'\n[machines.a.pen]\nupmm = 3",
+            "[machines.a.pen] upmm is unknown: did you mean",
+        ),
+        ("[machines.a]\norigin = 'homed'\nhome = 'never'", "origin = 'homed' and home = 'never' contradict each other"),
         ("[machines.left.pen]\nkind = 'z'\nup_mm = -1", "pen.up_mm = -1 must be above pen.down_mm = 0"),
         ("[machines.left]\n[machines.right]", "2 machines are set, this version drives one"),
         ("[sheet]\nmargin_mm = 32", "sheet: margin_mm = 32 leaves no room in box_mm: make it smaller"),
@@ -71,9 +88,31 @@ def test_the_command_line_wins_over_the_file(tmp_path: Path) -> None:
     assert (machine.url, machine.baud) == ("serial:///dev/ttyACM1", 9600)
 
 
-def test_a_later_device_is_refused_on_the_command_line_too(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="comes with a later version"):
-        settings("", tmp_path, device="dobot")
+def test_each_device_is_named_on_the_command_line(tmp_path: Path) -> None:
+    assert isinstance(settings("", tmp_path, device="dobot").machines["plotter"], DobotMachine)
+    emco = settings("", tmp_path, device="emco", port="file:///srv/programs").machines["plotter"]
+    assert isinstance(emco, EmcoMachine)
+    assert emco.link == "file"
+
+
+def test_an_emco_is_never_found_by_itself(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="is not found by itself: say its url"):
+        settings("", tmp_path, device="emco").machines["plotter"].check_streamable()
+
+
+@pytest.mark.parametrize(
+    ("text", "home", "origin"),
+    [
+        ("", "never", "here"),
+        ("home = 'job'", "job", "homed"),
+        ("origin = 'homed'", "start", "homed"),
+        ("origin = 'homed'\nhome = 'job'", "job", "homed"),
+    ],
+)
+def test_homed_positions_are_counted_from_home(text: str, home: str, origin: str, tmp_path: Path) -> None:
+    machine = settings(f"[machines.a]\n{text}", tmp_path).machines["a"]
+    assert isinstance(machine, GrblMachine)
+    assert (machine.home, machine.origin) == (home, origin)
 
 
 def test_a_servo_pen_is_read(tmp_path: Path) -> None:

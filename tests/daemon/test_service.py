@@ -14,12 +14,13 @@ from threading import Event, Thread
 
 import pytest
 
-from daemon.config import Machine, Options, ServoPenSettings, Settings, ZPenSettings, load_settings
+from daemon.config import GrblMachine, Options, ServoPenSettings, Settings, ZPenSettings, load_settings
 from daemon.control import Order, give_order
 from daemon.errors import SettingsError
+from daemon.jobs.devices import touches
 from daemon.jobs.journal import Job
 from daemon.jobs.states import State
-from daemon.service import Parts, Service, _touches, parts_of
+from daemon.service import Parts, Service, parts_of
 from firmware_protocol.ink import PenRule
 from tests.daemon.jobs.test_pool import PLANNER
 
@@ -215,9 +216,9 @@ def test_a_thread_that_dies_ends_the_daemon_in_order(tmp_path: Path) -> None:
 
 
 def test_the_pen_of_a_simulated_machine_is_up_where_the_settings_say() -> None:
-    assert _touches(Machine(dialect="paper", pen=ZPenSettings(kind="z", up_mm=-5))) == PenRule(up_is_minus=True)
-    assert _touches(Machine(pen=ZPenSettings(kind="z", down_mm=1))) == PenRule(down_at_mm=1)
-    assert _touches(Machine(pen=ServoPenSettings(kind="servo", up_s=3))) == PenRule(down_s=1000, up_s=3)
+    assert touches(GrblMachine(dialect="paper", pen=ZPenSettings(kind="z", up_mm=-5))) == PenRule(up_is_minus=True)
+    assert touches(GrblMachine(pen=ZPenSettings(kind="z", down_mm=1))) == PenRule(down_at_mm=1)
+    assert touches(GrblMachine(pen=ServoPenSettings(kind="servo", up_s=3))) == PenRule(down_s=1000, up_s=3)
 
 
 def test_the_daemons_own_process_loads_no_network_no_vision_and_no_arrays() -> None:

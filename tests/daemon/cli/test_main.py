@@ -117,7 +117,7 @@ def test_an_order_without_a_daemon_fails_with_a_sentence(
     ("arguments", "sentence"),
     [
         ([], "no machine is set: give --device grbl"),
-        (["--device", "emco"], "device 'emco' comes with a later version"),
+        (["--device", "emco"], "device emco is not found by itself: say its url"),
         (["--config", "/does/not/exist.toml", "--device", "sim"], "/does/not/exist.toml cannot be read"),
     ],
 )

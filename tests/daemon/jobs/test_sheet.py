@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.config import Machine, Sheet
+from daemon.config import GrblMachine, Sheet
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm
 
 
@@ -21,18 +21,18 @@ def test_from_each_corner_box_and_reach_run_into_the_sheet(
     corner: str, box: tuple[float, float], low: tuple[float, float]
 ) -> None:
     sheet = Sheet.model_validate({"box_mm": (60, 40), "box_origin_mm": (10, 20), "corner": corner})
-    machine = Machine(reach_mm=(200, 100))
+    machine = GrblMachine(reach_mm=(200, 100))
     assert box_origin_mm(sheet, machine) == box
     assert reach_low_mm(sheet, machine) == low
 
 
 def test_homed_the_corner_lies_where_the_settings_say_and_the_reach_begins_at_nought() -> None:
     sheet = Sheet(box_mm=(60, 40), box_origin_mm=(10, 20), corner="lower right")
-    machine = Machine(origin="homed", origin_mm=(150, 5))
+    machine = GrblMachine(origin="homed", origin_mm=(150, 5))
     assert box_origin_mm(sheet, machine) == (80, 25)
     assert reach_low_mm(sheet, machine) == (0, 0)
 
 
 def test_homed_the_reach_ends_at_nought_where_the_corner_lies_below_it() -> None:
-    machine = Machine(origin="homed", origin_mm=(-190, -90), reach_mm=(200, 100))
+    machine = GrblMachine(origin="homed", origin_mm=(-190, -90), reach_mm=(200, 100))
     assert reach_low_mm(Sheet(), machine) == (-200, -100)

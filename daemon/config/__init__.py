@@ -1,0 +1,31 @@
+"""The settings: one TOML file, the command line and the environment, read here and nowhere else, checked once."""
+
+from __future__ import annotations
+
+from daemon.config.load import DEFAULT_MACHINE, Options, Settings, load_settings
+from daemon.config.machine import SIMULATED_GRBL, AnyMachine, DobotMachine, EmcoMachine, GrblMachine, Machine
+from daemon.config.paths import Paths
+from daemon.config.pen import PenSettings, ServoPenSettings, ZPenSettings
+from daemon.config.section import Section
+from daemon.config.sheet import Intake, Planning, Sheet
+
+__all__ = [
+    "DEFAULT_MACHINE",
+    "SIMULATED_GRBL",
+    "AnyMachine",
+    "DobotMachine",
+    "EmcoMachine",
+    "GrblMachine",
+    "Intake",
+    "Machine",
+    "Options",
+    "Paths",
+    "PenSettings",
+    "Planning",
+    "Section",
+    "ServoPenSettings",
+    "Settings",
+    "Sheet",
+    "ZPenSettings",
+    "load_settings",
+]

@@ -1,0 +1,110 @@
+"""The settings from the file, the command line and the environment, checked once."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError, field_validator
+
+from daemon.config.explain import explain
+from daemon.config.machine import SIMULATED_GRBL, AnyMachine
+from daemon.config.paths import Paths, paths_of
+from daemon.config.section import Section
+from daemon.config.sheet import Intake, Planning, Sheet
+from daemon.errors import SettingsError
+from daemon.places import usual_file
+
+DEFAULT_MACHINE = "plotter"
+"""What the machine is called where no file names one."""
+
+
+class Settings(Section):
+    """Everything that can be set."""
+
+    paths: Paths
+    intake: Intake = Intake()
+    planning: Planning = Planning()
+    sheet: Sheet = Sheet()
+    machines: dict[Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$")], AnyMachine]
+
+    @field_validator("machines")
+    @classmethod
+    def _one_machine(cls, machines: dict[str, AnyMachine]) -> dict[str, AnyMachine]:
+        if len(machines) != 1:
+            raise ValueError(f"{len(machines)} machines are set, this version drives one: keep one [machines.NAME]")
+        return machines
+
+    @property
+    def machine_name(self) -> str:
+        return next(iter(self.machines))
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the command line says; it wins over the file, the file over the environment."""
+
+    config: Path | None = None
+    device: str | None = None
+    port: str | None = None
+    state_dir: Path | None = None
+    inbox: Path | None = None
+    log_dir: Path | None = None
+
+
+def load_settings(
+    options: Options, *, environment: Mapping[str, str] = os.environ, machine_needed: bool = False
+) -> Settings:
+    """Everything that is set, checked. Raises SettingsError, which names the file, the section, the key and the cure.
+
+    machine_needed: a machine must have been named, by `--device`, `--port` or a `[machines.NAME]` section.
+    """
+    file = options.config or usual_file(environment)
+    raw = _read_toml(file) if file else {}
+    if machine_needed and not (raw.get("machines") or options.device or options.port):
+        raise SettingsError("no machine is set: give --device grbl (or --device sim), or a [machines.NAME] section")
+    place = str(file) if file else "settings"
+    try:
+        return Settings.model_validate(_with_machine(_with_paths(raw, options, environment), options))
+    except ValidationError as error:
+        raise SettingsError(explain(error, place, Settings.model_fields)) from None
+
+
+def _read_toml(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SettingsError(f"{file} cannot be read ({error.strerror}): give another file with --config") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{file} is not TOML ({error}): correct that place") from None
+
+
+def _with_paths(raw: dict[str, Any], options: Options, environment: Mapping[str, str]) -> dict[str, Any]:
+    given = raw.get("paths", {})
+    if not isinstance(given, dict):
+        return raw
+    said = {"state_dir": options.state_dir, "inbox": options.inbox, "log_dir": options.log_dir}
+    return raw | {"paths": paths_of(given, said, environment)}
+
+
+def _with_machine(raw: dict[str, Any], options: Options) -> dict[str, Any]:
+    machines = raw.get("machines") or {DEFAULT_MACHINE: {}}
+    said = _said_of_machine(options)
+    if not isinstance(machines, dict) or not said:
+        return raw | {"machines": machines}
+    return raw | {"machines": {name: _merged(machine, said) for name, machine in machines.items()}}
+
+
+def _merged(machine: Any, said: dict[str, Any]) -> Any:
+    return machine | said if isinstance(machine, dict) else machine
+
+
+def _said_of_machine(options: Options) -> dict[str, Any]:
+    said: dict[str, Any] = {"url": options.port} if options.port else {}
+    if options.device == "sim":
+        return {"device": "grbl", "url": SIMULATED_GRBL} | said
+    return said | ({"device": options.device} if options.device else {})

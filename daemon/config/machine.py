@@ -1,0 +1,196 @@
+"""One machine: which device it is, how to reach it, and how it draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from daemon.config.pen import PenSettings, ZPenSettings
+from daemon.config.section import PairMm, Positive, Section
+from daemon.errors import SettingsError
+
+SIMULATED_GRBL = "sim://grbl"
+_PAPER_UP_MM = -5.0
+_WAYS = {
+    "grbl": (("serial:///", "tcp://"), "auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"),
+    "emco": (("file:///", "serial:///", "tcp://"), "file:///FOLDER, serial:///dev/NAME, tcp://HOST:PORT or sim://emco"),
+    "dobot": (("serial:///", "tcp://"), "auto, serial:///dev/NAME, tcp://HOST:PORT or sim://dobot"),
+}
+"""How the url of each device may begin, and how that is said."""
+
+
+class Machine(Section):
+    """What every machine has. Positions are in mm of the sheet, or of the machine where it has been homed."""
+
+    device: str
+    url: str = "auto"
+    home: Literal["never", "start", "job"] = "never"
+    """When the machine finds its home: never, when it is opened, or before each job as well."""
+    park_mm: PairMm = (0.0, 0.0)
+    """Where the pen waits."""
+    draw_mm_s: Annotated[float, Field(gt=0, le=1000)] = 20.0
+    resolution_mm: Annotated[float, Field(ge=0, le=1)] = 0.02
+    """Shorter moves are not sent: the length of a few steps of the motors."""
+    pen: PenSettings = ZPenSettings()
+    sheet: Literal["ask", "feed", "auto"] = "auto"
+    """"ask": wait for a person after each drawing; "feed": draw on; "auto": feed on a simulated machine, else ask."""
+
+    @model_validator(mode="after")
+    def _way_to_this_device(self) -> Machine:
+        begins, ways = _WAYS[self.device]
+        if self.url != "auto" and not self.url.startswith((*begins, "sim://")):
+            raise ValueError(f"'{self.url}' is no way to a machine of device '{self.device}': use {ways}")
+        if self.simulated and self.url.partition("?")[0].rstrip("/") != f"sim://{self.device}":
+            raise ValueError(f"'{self.url}' is not simulated for device '{self.device}': use sim://{self.device}")
+        return self
+
+    @field_validator("url")
+    @classmethod
+    def _bare_path(cls, url: str) -> str:
+        return f"serial://{url}" if url.startswith("/") else url
+
+    def check_streamable(self) -> None:
+        """Raises SettingsError when nothing can be sent to it by these settings, though programs can be written."""
+
+    @property
+    def simulated(self) -> bool:
+        return self.url.startswith("sim://")
+
+    @property
+    def asks_for_sheets(self) -> bool:
+        return self.sheet == "ask" or (self.sheet == "auto" and not self.simulated)
+
+
+class GrblMachine(Machine):
+    """A controller with GRBL 1.1 or one that speaks like it."""
+
+    device: Literal["grbl"] = "grbl"
+    baud: Annotated[int, Field(gt=0)] = 115200
+    flow: Literal["count", "line"] = "count"
+    """"count" fills the controller's buffer, "line" waits for each answer: for clones that lose bytes."""
+    reach_mm: tuple[Positive, Positive] = (200.0, 200.0)
+    origin: Literal["here", "homed"] = "here"
+    """"here": the sheet's corner lies where the pen stands when the port is opened; "homed": at origin_mm."""
+    origin_mm: PairMm = (0.0, 0.0)
+    dialect: Literal["grbl", "paper"] = "grbl"
+    units: Literal["mm", "cm", "inch"] = "mm"
+    """Of a program in the paper's dialect, which does not say its units itself."""
+    lift_after_restart: bool = True
+    may_set: bool = False
+    """Settings of the controller that would spoil a drawing are corrected, not only named."""
+    dry_run: bool = False
+    """Each program is first read by the controller in its check mode, in which nothing moves."""
+    motors_off_after_min: Positive | None = None
+    """Motors lose their current after so long without a job; the position is then unknown."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _homing_and_origin_go_together(cls, given: Any) -> Any:
+        if not isinstance(given, Mapping):
+            return given
+        if given.get("origin") == "homed":
+            return {"home": "start", **given}
+        return (
+            {**given, "origin": "homed"} if given.get("home") in ("start", "job") and "origin" not in given else given
+        )
+
+    @model_validator(mode="after")
+    def _home_is_found_where_positions_are_counted_from_it(self) -> GrblMachine:
+        if (self.origin == "homed") != (self.home != "never"):
+            raise ValueError(
+                f"origin = '{self.origin}' and home = '{self.home}' contradict each other: homed, positions are "
+                "counted from the machine's home; say origin = 'homed' with home = 'start' or 'job', or neither"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _up_is_above_down(self) -> GrblMachine:
+        if isinstance(self.pen, ZPenSettings) and self.dialect != "paper":
+            self.pen.check_lifts()
+        return self
+
+    def check_streamable(self) -> None:
+        """Raises SettingsError when its programs are files for another machine: they press the pen down or shrink."""
+        paper, pen = self.dialect == "paper", self.pen
+        if paper and not (isinstance(pen, ZPenSettings) and pen.up_mm == _PAPER_UP_MM):
+            raise SettingsError("dialect = 'paper' lifts to Z-5: say pen.up_mm = -5 if that is up, or dialect = 'grbl'")
+        if paper and self.units != "mm":
+            raise SettingsError(f"units = '{self.units}' is for files, a GRBL counts in mm: say units = 'mm'")
+
+
+class EmcoMachine(Machine):
+    """An EMCO Concept Mill 250. X0 Y0 is set at the control (G54); its programs are started by the operator."""
+
+    device: Literal["emco"]
+    link: Literal["file", "xonxoff", "blocks"] = "xonxoff"
+    """A file in a folder that WinNC reads, serial text, or a block a line that the other side acknowledges."""
+    dialect: Literal["siemens", "fanuc"] = "siemens"
+    preset: Literal["7E1", "7E2", "8N1"] = "7E1"
+    """Data bits, parity, stop bits."""
+    baud: Annotated[int, Field(ge=110, le=115200)] = 9600
+    xoff_limit_s: Positive = 300.0
+    """A control that holds the transfer for longer has stopped."""
+    wait_for_xon: bool = True
+    """The transfer begins when the control asks for it, not when the job does."""
+    ack: Annotated[str, Field(min_length=1, max_length=16)] = "\x06"
+    nak: Annotated[str, Field(min_length=1, max_length=16)] = "\x15"
+    """What acknowledges a block and what asks for it again: a control character or a text such as "ok"."""
+    answer_within_s: Positive = 10.0
+    retries: Annotated[int, Field(ge=0, le=100)] = 3
+    reach_mm: tuple[Positive, Positive] = (350.0, 250.0)
+    pen: ZPenSettings = ZPenSettings()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _a_folder_takes_files(cls, given: Any) -> Any:
+        if isinstance(given, Mapping) and str(given.get("url", "")).startswith("file://"):
+            return {"link": "file", **given}
+        return given
+
+    @model_validator(mode="after")
+    def _link_and_url_go_together(self) -> EmcoMachine:
+        self.pen.check_lifts()
+        if self.url != "auto" and (self.link == "file") != self.url.startswith("file://"):
+            raise ValueError(f"link = '{self.link}' does not go with url = '{self.url}': a folder is file:///FOLDER")
+        if self.home != "never":
+            raise ValueError("an EMCO is homed at its control, by the operator: say home = 'never'")
+        return self
+
+    def check_streamable(self) -> None:
+        """Raises SettingsError while nobody has said how the machine is reached: no port can be found by itself."""
+        if self.url == "auto":
+            raise SettingsError(f"device emco is not found by itself: say its url (or --port), {_WAYS['emco'][1]}")
+
+
+class DobotMachine(Machine):
+    """A Dobot Magician. The sheet lies where `sheet_origin_mm` says, in the arm's own coordinates."""
+
+    device: Literal["dobot"]
+    home: Literal["never", "start", "job"] = "start"
+    baud: Annotated[int, Field(gt=0)] = 115200
+    sheet_origin_mm: PairMm = (190.0, -57.0)
+    """The sheet's lower left corner, seen from the middle of the base."""
+    park_mm: PairMm = (25.0, 57.0)
+    pen: ZPenSettings = ZPenSettings(up_mm=10.0, down_mm=-10.0)
+
+    @model_validator(mode="after")
+    def _up_is_above_down(self) -> DobotMachine:
+        self.pen.check_lifts()
+        return self
+
+
+def _device_of(machine: Any) -> Any:
+    return machine.get("device", "grbl") if isinstance(machine, Mapping) else getattr(machine, "device", None)
+
+
+AnyMachine: TypeAlias = Annotated[
+    Annotated[GrblMachine, Tag("grbl")] | Annotated[EmcoMachine, Tag("emco")] | Annotated[DobotMachine, Tag("dobot")],
+    Discriminator(
+        _device_of,
+        custom_error_type="device",
+        custom_error_message="a machine is a section with device = 'grbl', 'emco' or 'dobot': write one of these",
+    ),
+]
+"""By its device."""

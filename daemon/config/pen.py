@@ -1,0 +1,38 @@
+"""How the pen is lowered and lifted."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
+
+from daemon.config.section import Positive, Section
+
+
+class ZPenSettings(Section):
+    """The pen hangs on the Z axis; up is +Z, only the paper's own machine has it at Z-5."""
+
+    kind: Literal["z"] = "z"
+    up_mm: float = 5.0
+    down_mm: float = 0.0
+    plunge_mm_s: Positive = 10.0
+
+    def check_lifts(self) -> None:
+        """Raises ValueError when up is not above down."""
+        if self.up_mm <= self.down_mm:
+            raise ValueError(f"pen.up_mm = {self.up_mm:g} must be above pen.down_mm = {self.down_mm:g}")
+
+
+class ServoPenSettings(Section):
+    """The pen hangs on a servo driven by the spindle output: `M3 S...`."""
+
+    kind: Literal["servo"]
+    up_s: Annotated[float, Field(ge=0)] = 0.0
+    """The S word that lifts the pen; a number for the controller, no time."""
+    down_s: Annotated[float, Field(ge=0)] = 1000.0
+    """The S word that lowers it."""
+    dwell_s: Annotated[float, Field(ge=0, le=10)] = 0.2
+    """Seconds the servo takes."""
+
+
+PenSettings: TypeAlias = Annotated[ZPenSettings | ServoPenSettings, Field(discriminator="kind")]

@@ -1,0 +1,49 @@
+"""How pictures come in, are read, and are laid on the sheet."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from daemon.config.section import PairMm, Positive, Section
+
+
+class Intake(Section):
+    settle_s: Annotated[float, Field(ge=0, le=600)] = 1.0
+    """How long size and time of a file must stay the same; three times as long where nobody said it was closed."""
+    max_megapixels: Positive = 100.0
+
+
+class Planning(Section):
+    """Limits of the worker process, how it reads a page, and whether it says why in explain.json."""
+
+    memory_mb: Annotated[int, Field(ge=128)] = 1024
+    time_limit_s: Positive = 300.0
+    threads: Annotated[int, Field(ge=1, le=64)] = 1
+    ahead: Annotated[int, Field(ge=1)] = 2  # jobs that are planned before the machine is free for them
+    graph: Literal["repaired", "paper"] = "repaired"
+    explain: bool = False
+
+
+class Sheet(Section):
+    """Where on the sheet a picture is drawn, in mm inwards from the corner where the origin lies, and how exactly."""
+
+    box_mm: tuple[Positive, Positive] = (64.0, 64.0)
+    box_origin_mm: PairMm = (25.0, 25.0)
+    corner: Literal["lower left", "lower right", "upper left", "upper right"] = "lower left"
+    """The sheet's corner where the origin lies; x still runs to the right and y up."""
+    size: Literal["fit", "true"] = "fit"
+    """"fit": as large as the box; "true": as large as the picture's resolution says, in the middle of the box."""
+    margin_mm: Annotated[float, Field(ge=0)] = 0.0
+    rotate: Literal[0, 90, 180, 270] = 0
+    """Degrees clockwise."""
+    mirror: bool = False
+    """Left and right exchanged, before it is turned."""
+    error_mm: Positive = 0.05
+
+    @model_validator(mode="after")
+    def _room_inside_the_margin(self) -> Sheet:
+        if 2 * self.margin_mm >= min(self.box_mm):
+            raise ValueError(f"margin_mm = {self.margin_mm:g} leaves no room in box_mm: make it smaller")
+        return self
