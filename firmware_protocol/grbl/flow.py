@@ -118,16 +118,3 @@ def _fault(text: str, longest: int) -> str:
     if len(text) > longest:
         return f"is longer than the {longest} characters that the controller takes: shorten it"
     return ""
-
-
-def strokes_before(strokes: Sequence[int | None], line: int) -> int:
-    """Strokes that lie wholly before `line`. strokes: the stroke of each line, never falling."""
-    return next((stroke for stroke in strokes[line:] if stroke is not None), strokes_touched(strokes, len(strokes)))
-
-
-def strokes_touched(strokes: Sequence[int | None], lines: int) -> int:
-    """No stroke from this number on has a line among the first `lines`."""
-    last = next((stroke for stroke in reversed(strokes[:lines]) if stroke is not None), None)
-    if last is not None:
-        return last + 1
-    return next((stroke for stroke in strokes if stroke is not None), 0)

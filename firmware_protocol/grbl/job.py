@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from firmware_protocol.grbl import flow, sentences
 from firmware_protocol.grbl.flow import BARRIER, Flow
 from firmware_protocol.session import Ended, JobLine, Verdict
+from firmware_protocol.strokes import strokes_before, strokes_touched
 
 
 class Job:
@@ -42,8 +43,8 @@ class Job:
 
     def _on_paper(self, planner_blocks: int) -> tuple[int, int]:
         if self.verdict is Verdict.FINISHED:
-            return (flow.strokes_touched(self._strokes, len(self)),) * 2
+            return (strokes_touched(self._strokes, len(self)),) * 2
         # The line after the last answered one may be an arc of which the first segments have been planned.
         begun = self.flow.answered + 1 if self.held else self.flow.sent
         drawn = self.flow.certainly_drawn(planner_blocks=planner_blocks)
-        return flow.strokes_before(self._strokes, drawn), flow.strokes_touched(self._strokes, begun)
+        return strokes_before(self._strokes, drawn), strokes_touched(self._strokes, begun)

@@ -10,8 +10,6 @@ from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.grbl import flow
 from firmware_protocol.grbl.flow import Flow
 
-STROKES = (None, 0, 0, 0, 1, 1, 2, None)
-
 
 def test_lines_are_sent_until_the_buffer_is_full_to_the_last_byte() -> None:
     lines = Flow(["G1X1"] * 4, room_bytes=15)
@@ -116,18 +114,3 @@ def test_dollar_lines_stand_before_the_gcode() -> None:
     flow.check(["$H", "G21"], buffer_bytes=128)
     with pytest.raises(LocalProtocolError, match="put it before the G-code"):
         flow.check(["G21", "$H"], buffer_bytes=128)
-
-
-@pytest.mark.parametrize(("line", "strokes"), [(0, 0), (1, 0), (3, 0), (4, 1), (6, 2), (7, 3), (8, 3)])
-def test_strokes_before_a_line(line: int, strokes: int) -> None:
-    assert flow.strokes_before(STROKES, line) == strokes
-
-
-@pytest.mark.parametrize(("lines", "strokes"), [(0, 0), (1, 0), (2, 1), (5, 2), (7, 3), (8, 3)])
-def test_strokes_touched_by_the_first_lines(lines: int, strokes: int) -> None:
-    assert flow.strokes_touched(STROKES, lines) == strokes
-
-
-def test_a_job_that_goes_on_with_stroke_7_leaves_the_first_seven_as_they_are() -> None:
-    assert flow.strokes_before((None, 7, 8), 0) == 7
-    assert flow.strokes_touched((None, 7, 8), 1) == 7
