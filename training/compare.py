@@ -91,7 +91,6 @@ def train_one(entry: Entry, batch_norm: bool, given: argparse.Namespace) -> dict
     test = quickdraw.read([given.test], limit=given.limit)
     tested = Pages(test, size_px)
     figures = run.validate(run.settle(pages), {"test": [tested.page(k) for k in range(len(test))]})
-    assert run.progress.history is not None
     return {"images": run.progress.images, "n": len(test), "test": figures, "history": run.progress.history[:-1]}
 
 
@@ -125,29 +124,6 @@ def table(results: dict[str, Any]) -> str:
     return "\n".join(rows)
 
 
-def draw_curves(results: dict[str, Any], folder: Path) -> None:
-    """iou.png and loss.png: validation over images, one line a network, dashed with BatchNorm."""
-    import matplotlib as mpl  # noqa: PLC0415  the table needs no plotting
-
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt  # noqa: PLC0415
-
-    for figure, label in (("paper_mean", "validation mean IoU, %"), ("paper_loss", "validation cross-entropy")):
-        _, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
-        for number, entry in enumerate(TABLE):
-            for norm, style in ((False, "-"), (True, "--")):
-                history = results.get(key_of(entry, norm), {}).get("history", [])
-                axes.plot(
-                    [h["images"] for h in history], [h[figure] for h in history], style,
-                    color=f"C{number}", label=key_of(entry, norm) if history else None,
-                )  # fmt: skip
-        axes.set(xlabel="images", ylabel=label, yscale="log" if figure == "paper_loss" else "linear")
-        axes.legend(fontsize=7)
-        axes.grid(alpha=0.3)
-        plt.savefig(folder / f"{'iou' if figure == 'paper_mean' else 'loss'}.png", dpi=130)
-        plt.close()
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--run", action="store_true", help="train what docs/compare/results.json does not hold yet")
@@ -171,7 +147,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     results = read_results()
     print(table(results))
     if results:
-        draw_curves(results, RESULTS.parent)
+        # The table needs no plotting.
+        from training.plot import draw_table  # noqa: PLC0415
+
+        draw_table({key: each["history"] for key, each in results.items()}, RESULTS.parent)
     return 0
 
 

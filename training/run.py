@@ -59,7 +59,7 @@ class Progress:
     images: int = 0
     batches: int = 0
     seconds: float = 0.0
-    history: list[dict[str, float]] | None = None
+    history: list[dict[str, float]] = field(default_factory=list)
 
     def share(self, config: Config) -> float:
         """0 at the start, 1 at the end of the budget."""
@@ -105,7 +105,7 @@ class Run:
         self.average = Average(self.net, config.ema)
         self.optimiser = _optimiser(self.net, config)
         self.weights = omega(config.omega_exponent).to(self.device)
-        self.progress = Progress(history=[])
+        self.progress = Progress()
 
     def step(self, batch: Batch) -> float:
         share = self.progress.share(self.config)
@@ -158,7 +158,6 @@ class Run:
                 losses.append(float(LOSSES["plain"](logits, torch.from_numpy(batch.label), self.weights)))
             figures[f"{name}_loss"] = sum(losses) / len(losses)
             figures |= {f"{name}_{label}": value for label, value in confusion.percent().items()}
-        assert self.progress.history is not None
         self.progress.history.append(figures)
         return figures
 

@@ -22,6 +22,7 @@ from tqdm import tqdm
 from training import quickdraw
 from training.canvas import Batch, Canvases, Source
 from training.network import Shape
+from training.plot import draw_run
 from training.render import Sample, reference
 from training.run import Config, Run
 
@@ -67,6 +68,7 @@ def _validated(run: Run, canvases: Source, sets: dict[str, list[Sample]]) -> dic
     settled = run.settle(canvases)
     figures = run.validate(settled, sets)
     run.save(settled)
+    draw_run(run.progress.history, run.folder / "curves.png")
     shown = {name: f"{figures[f'{name}_mean']:.2f}" for name in sets}
     tqdm.write(json.dumps({k: round(v, 2) for k, v in figures.items()}))
     return shown
