@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from firmware_protocol.ink import Polyline
 
@@ -34,3 +34,11 @@ class Simulator(Protocol):
 
     def next_time(self) -> float | None:
         """When something will next change or be said; None: nothing more until something is received."""
+
+
+@runtime_checkable
+class Eventful(Protocol):
+    """A simulator that things can happen to while it runs."""
+
+    def happen(self, sentence: str, now: float) -> None:
+        """Something happens to the machine. Raises ValueError, naming all that can, when the sentence is not known."""

@@ -10,13 +10,16 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from daemon.cli import simulate_ctl
 from daemon.errors import DiskTrouble
 from daemon.machine.pseudo_terminal import serve
 from daemon.machine.simulated import simulator_of
 
-_EXAMPLE = """example:
+_EXAMPLE = """examples:
   linedrawd simulate grbl --pty /tmp/plotter --ink /tmp/ink.json &
   linedrawd draw cat.png --device grbl --port /tmp/plotter
+  linedrawd simulate ctl /tmp/plotter limit x closed      # somebody presses a switch
+  linedrawd simulate ctl /tmp/plotter lose byte 12        # the 13th byte from now on never arrives
 """
 
 
@@ -30,7 +33,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("machine", choices=["grbl"], help="which controller")
+    machines = parser.add_subparsers(required=True, metavar="grbl|ctl")
+    _add_machine(machines)
+    simulate_ctl.add_parser(machines)
+
+
+def _add_machine(machines: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = machines.add_parser(
+        "grbl",
+        help="a plotter with GRBL 1.1h",
+        epilog=_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--pty", required=True, type=Path, metavar="LINK", help="symbolic link to the pseudo terminal")
     parser.add_argument("--ink", type=Path, metavar="FILE", help="write what was drawn there at the end, as JSON in mm")
     parser.add_argument(

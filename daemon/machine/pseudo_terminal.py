@@ -11,30 +11,74 @@ import tty
 from pathlib import Path
 
 from daemon.errors import SettingsError
-from firmware_protocol.grbl.simulator.simulator import GrblSimulator
+from daemon.machine.simulator_control import SAID, ControlSocket
+from firmware_protocol.simulator import Eventful, Simulator
 
 _LOOK_S = 0.01
 """How often to look for a client: the kernel wakes nobody when the other end is opened."""
 
 
-def serve(simulator: GrblSimulator, link: Path, *, stop_fd: int) -> None:
+def serve(simulator: Simulator, link: Path, *, stop_fd: int) -> None:
     """Serve `simulator` at the symbolic link `link` until `stop_fd` becomes readable; then the link is removed.
 
-    Each opening of the link is a DTR reset. The machine goes on when its client leaves.
+    Each opening of the link is a DTR reset. The machine goes on when its client leaves. Beside the link it listens
+    to `simulator_control.tell`. While it is unplugged there is no link, and its client reads the end of the file.
     Raises SettingsError when the link cannot be made.
     """
-    master, slave = pty.openpty()
+    control = ControlSocket(link)
     try:
-        tty.setraw(slave)
-        _make_link(link, os.ttyname(slave))
-        os.close(slave)  # held open, it would hide from us that a client comes or goes
-        os.set_blocking(master, False)
+        terminal = _Terminal(link)
         try:
-            _Terminal(simulator, master, stop_fd).run()
+            _Bench(simulator, terminal, control, stop_fd).run()
         finally:
-            link.unlink(missing_ok=True)
+            terminal.unplug()
     finally:
-        os.close(master)
+        control.close()
+
+
+class _Terminal:
+    """The pseudo terminal and the link to it, plugged in from the start."""
+
+    def __init__(self, link: Path) -> None:
+        self._link = link
+        self.master: int | None = None
+        self.plug_in()
+
+    def plug_in(self) -> None:
+        self.master, slave = pty.openpty()
+        try:
+            tty.setraw(slave)
+            _make_link(self._link, os.ttyname(slave))
+        except SettingsError:
+            os.close(self.master)
+            raise
+        finally:
+            os.close(slave)  # held open, it would hide from us that a client comes or goes
+        os.set_blocking(self.master, False)
+
+    def unplug(self) -> None:
+        if self.master is not None:
+            self._link.unlink(missing_ok=True)
+            os.close(self.master)
+            self.master = None
+
+    def has_client(self) -> bool:
+        if self.master is None:
+            return False
+        poll = select.poll()
+        poll.register(self.master, select.POLLIN)
+        return not any(event & select.POLLHUP for _, event in poll.poll(0))
+
+    def read(self) -> bytes:
+        if self.master is not None:
+            with contextlib.suppress(OSError):  # nothing to read, or the client has just left
+                return os.read(self.master, 4096)
+        return b""
+
+    def write(self, data: bytes) -> None:
+        if self.master is not None:
+            with contextlib.suppress(BlockingIOError):  # a client that does not read loses what the machine says
+                os.write(self.master, data)
 
 
 def _make_link(link: Path, target: str) -> None:
@@ -46,46 +90,62 @@ def _make_link(link: Path, target: str) -> None:
         raise SettingsError(f"{link} cannot be made ({error.strerror}): choose a path that is free") from error
 
 
-class _Terminal:
-    def __init__(self, simulator: GrblSimulator, master: int, stop_fd: int) -> None:
-        self._simulator, self._master, self._stop_fd = simulator, master, stop_fd
+class _Bench:
+    def __init__(self, simulator: Simulator, terminal: _Terminal, control: ControlSocket, stop_fd: int) -> None:
+        self._simulator, self._terminal, self._control, self._stop_fd = simulator, terminal, control, stop_fd
         self._started_s = time.monotonic()
         self._client = False
 
     def run(self) -> None:
         while not self._stop_asked():
-            if self._has_client():
+            if self._terminal.has_client():
                 self._exchange()
             else:
                 self._client = False
                 self._simulator.advance(self._now())
+            self._follow_plug()
 
     def _now(self) -> float:
         return time.monotonic() - self._started_s
 
     def _stop_asked(self) -> bool:
         """Wait until there may be something to do, and say whether that is the end."""
-        waiting: list[int] = [self._stop_fd]
+        waiting: list[int] = [self._stop_fd, self._control.fileno()]
         timeout = _LOOK_S
-        if self._client:
-            waiting.append(self._master)
+        if self._client and self._terminal.master is not None:
+            waiting.append(self._terminal.master)
             soonest = self._simulator.next_time()
             timeout = 1.0 if soonest is None else min(1.0, max(0.0, soonest - self._now()))
-        return self._stop_fd in select.select(waiting, [], [], timeout)[0]
+        readable = select.select(waiting, [], [], timeout)[0]
+        if self._control.fileno() in readable:
+            self._listen()
+        return self._stop_fd in readable
 
-    def _has_client(self) -> bool:
-        poll = select.poll()
-        poll.register(self._master, select.POLLIN)
-        return not any(event & select.POLLHUP for _, event in poll.poll(0))
+    def _listen(self) -> None:
+        sentence, connection = self._control.sentence()
+        self._control.answer(connection, self._happened(sentence))
+
+    def _happened(self, sentence: str) -> str:
+        if not isinstance(self._simulator, Eventful):
+            return "nothing can happen to this simulated machine at run time: ask for it when it is started"
+        try:
+            self._simulator.happen(sentence, self._now())
+        except ValueError as error:
+            return str(error)
+        return SAID
 
     def _exchange(self) -> None:
         if not self._client:
             self._client = True
             self._simulator.open(self._now())
-        with contextlib.suppress(OSError):  # nothing to read, or the client has just left
-            self._simulator.receive(os.read(self._master, 4096), self._now())
+        self._simulator.receive(self._terminal.read(), self._now())
         data = self._simulator.advance(self._now())
+        if not self._simulator.unplugged:
+            self._terminal.write(data)
+
+    def _follow_plug(self) -> None:
         if self._simulator.unplugged:
-            return
-        with contextlib.suppress(BlockingIOError):  # a client that does not read loses what the machine says
-            os.write(self._master, data)
+            self._terminal.unplug()
+            self._client = False
+        elif self._terminal.master is None:
+            self._terminal.plug_in()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import Enum, Flag, auto
 
+from firmware_protocol.grbl.simulator.inputs import Inputs
 from firmware_protocol.grbl.simulator.interpreter import Interpreter
 from firmware_protocol.grbl.simulator.lookahead import Block, Lookahead, Vector
 from firmware_protocol.grbl.simulator.modal import HERE, Memory
@@ -75,7 +76,7 @@ class Chip:
         self.inbound = Inbound(self.signal)
         self.sheet_mm: Vector = HERE
         """Where machine zero lies on the sheet: moves when the position is lost or set anew."""
-        self.closed_axes: set[int] = set()
+        self.inputs, self._felt = Inputs(), frozenset[int]()
         self.state = State.IDLE
         self.probe_mm, self.probed = HERE, False
         self.restart()
@@ -95,6 +96,7 @@ class Chip:
         self.stepper.place(self.stepper.now_at()[0])
         self.interpreter.reset(self.stepper.position_mm)
         self.probe_mm, self.probed = HERE, False
+        self.probe_for: bool | None = None
         self.set_spindle(5, 0.0)
 
     @property
@@ -128,6 +130,43 @@ class Chip:
                 self.alarm = 3
             self.stop_motors(always=True)
 
+    @property
+    def limits(self) -> frozenset[int]:
+        """The axes whose limit switch counts as closed: with $5=1 those whose switch is open."""
+        closed = self.inputs.limits(self.here)
+        return frozenset(range(3)) - closed if self.settings[5] else closed
+
+    @property
+    def contact(self) -> bool:
+        """Whether the probe counts as touching: with $6=1 when it does not."""
+        return self.inputs.contact(self.here) != bool(self.settings[6])
+
+    @property
+    def feels(self) -> bool:
+        """Whether the motion under way can change an input that matters now."""
+        matters = bool(self.settings[21]) or self.probe_for is not None
+        return matters and self.stepper.moving and self.inputs.depend_on_place
+
+    def feel(self) -> bool:
+        """Look at the inputs, as the interrupts do. Returns True when the main loop is concerned."""
+        closed = self.inputs.limits(self.here)
+        edge, self._felt = closed != self._felt, closed
+        if edge and self.settings[21] and self.state is not State.HOMING:
+            self.hard_limit()
+        if self.probe_for is not None and self.contact == self.probe_for:
+            steps = self.lookahead.steps(self.stepper.now_at()[0])
+            self.probe_mm, self.probed, self.probe_for = self.lookahead.millimetres(steps), True, None
+            self.signals |= Signal.CANCEL
+            return True
+        return edge
+
+    def press(self, pin: str) -> None:
+        """A pin goes low: what its interrupt does."""
+        if pin == "reset":
+            self.reset()
+        else:
+            self.signals |= Signal.HOLD if pin == "hold" else Signal.START
+
     def hard_limit(self) -> None:
         """A limit switch has tripped."""
         if self.state is not State.ALARM and not self.alarm:
@@ -157,7 +196,7 @@ class Chip:
             rpm = max(speed, slowest)
         self.spindle_direction, self.spindle_rpm = direction, rpm
         self.reports_to_overrides = 0
-        self.ink.servo(rpm, self.on_sheet(self.stepper.now_at()[0]))
+        self.ink.servo(rpm, self.here)
 
     def set_coolant(self, *, flood: bool) -> None:
         """Switch the coolant."""
@@ -181,6 +220,11 @@ class Chip:
         self.sheet_mm = (at[0] - position_mm[0], at[1] - position_mm[1], at[2] - position_mm[2])
         self.stepper.place(position_mm)
         self.interpreter.modal.position_mm = position_mm
+
+    @property
+    def here(self) -> Vector:
+        """Where the pen is on the sheet."""
+        return self.on_sheet(self.stepper.now_at()[0])
 
     def on_sheet(self, position_mm: Vector) -> Vector:
         (x, y, z), (sx, sy, sz) = position_mm, self.sheet_mm

@@ -9,7 +9,6 @@ from firmware_protocol.gcode import GcodeError, read_number
 from firmware_protocol.grbl.simulator import status
 from firmware_protocol.grbl.simulator.chip import Chip, Signal, State
 from firmware_protocol.grbl.simulator.homing import home
-from firmware_protocol.grbl.simulator.lookahead import Vector
 from firmware_protocol.grbl.simulator.motion import beyond_travel, move, perform
 from firmware_protocol.grbl.simulator.realtime import Wait, synchronize
 
@@ -38,7 +37,7 @@ def run_gcode(chip: Chip, line: str) -> Answer:
     return 0
 
 
-def run_command(chip: Chip, line: str, switches_mm: Vector | None) -> Answer:
+def run_command(chip: Chip, line: str) -> Answer:
     """`system_execute_line`: a cleaned line that begins with `$`."""
     try:
         if line == "$":
@@ -48,7 +47,7 @@ def run_command(chip: Chip, line: str, switches_mm: Vector | None) -> Answer:
         elif line[1] in "$GCX":
             _at_any_time(chip, line)
         else:
-            return (yield from _at_rest(chip, line, switches_mm))
+            return (yield from _at_rest(chip, line))
     except GcodeError as error:
         return error.code
     return 0
@@ -98,11 +97,11 @@ def _check_mode(chip: Chip) -> None:
     chip.say("[MSG:Enabled]\r\n")
 
 
-def _at_rest(chip: Chip, line: str, switches_mm: Vector | None) -> Answer:
+def _at_rest(chip: Chip, line: str) -> Answer:
     if chip.state not in (State.IDLE, State.ALARM):
         return NOT_IDLE
     if line[1] == "H":
-        return (yield from _home(chip, line, switches_mm))
+        return (yield from _home(chip, line))
     if line[1] == "N" and line != "$N":
         return (yield from _store_startup(chip, line))
     if line[1] == "R":
@@ -131,12 +130,12 @@ def _plain(chip: Chip, line: str) -> None:
         raise GcodeError(INVALID_STATEMENT)
 
 
-def _home(chip: Chip, line: str, switches_mm: Vector | None) -> Answer:
+def _home(chip: Chip, line: str) -> Answer:
     if not chip.settings[22]:
         return HOMING_IS_OFF
     if line != "$H":
         return INVALID_STATEMENT
-    yield from home(chip, switches_mm)
+    yield from home(chip)
     if not chip.abort:
         yield from run_startup(chip)
     return 0

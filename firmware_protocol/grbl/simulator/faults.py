@@ -29,6 +29,17 @@ class LoseOk:
 
 
 @dataclass(frozen=True, slots=True)
+class SlowUsb:
+    """What either side sends waits in the USB converter for up to `latency_s`, as with a latency timer; 0 mends it."""
+
+    latency_s: float
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.latency_s <= 1:
+            raise ValueError(f"a USB latency of {self.latency_s:g} s is not simulated: take 0 to 1")
+
+
+@dataclass(frozen=True, slots=True)
 class _Moment:
     """Happens `at_s` seconds after the port was opened, or right behind the `after_oks`-th `ok`: state one of them."""
 
@@ -61,4 +72,4 @@ class Unplug(_Moment):
 
 
 Timed: TypeAlias = Hang | BrownOut | HardLimit | Unplug
-Fault: TypeAlias = DropByte | FlipByte | LoseOk | Timed
+Fault: TypeAlias = DropByte | FlipByte | LoseOk | SlowUsb | Timed

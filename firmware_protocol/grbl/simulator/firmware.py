@@ -6,7 +6,6 @@ from firmware_protocol.gcode import GcodeError, clean_line
 from firmware_protocol.grbl.simulator import status
 from firmware_protocol.grbl.simulator.chip import Chip, State
 from firmware_protocol.grbl.simulator.commands import Answer, run_command, run_gcode, run_startup
-from firmware_protocol.grbl.simulator.lookahead import Vector
 from firmware_protocol.grbl.simulator.motion import slowed
 from firmware_protocol.grbl.simulator.realtime import Routine, execute_realtime, start_cycle
 
@@ -16,7 +15,7 @@ CHARACTER_S = 0.000065
 _BOOT_S = 0.001
 
 
-def run(chip: Chip, switches_mm: Vector | None) -> Routine:
+def run(chip: Chip) -> Routine:
     """From the reset vector on, for ever."""
     while True:
         chip.restart()
@@ -24,11 +23,11 @@ def run(chip: Chip, switches_mm: Vector | None) -> Routine:
         yield chip.now + _BOOT_S
         chip.say(status.BANNER)
         yield from _greet(chip)
-        yield from _serve(chip, switches_mm)
+        yield from _serve(chip)
 
 
 def _greet(chip: Chip) -> Routine:
-    if chip.settings[21] and chip.closed_axes:
+    if chip.settings[21] and chip.limits:
         chip.state = State.ALARM
         chip.say("[MSG:Check Limits]\r\n")
     if chip.state in (State.ALARM, State.SLEEP):
@@ -39,7 +38,7 @@ def _greet(chip: Chip) -> Routine:
         yield from run_startup(chip)
 
 
-def _serve(chip: Chip, switches_mm: Vector | None) -> Routine:
+def _serve(chip: Chip) -> Routine:
     while not chip.abort:
         line = chip.inbound.next_line()
         if line is None:
@@ -51,13 +50,13 @@ def _serve(chip: Chip, switches_mm: Vector | None) -> Routine:
             yield None
             chip.inbound.reading = False
         if line is not None and not chip.abort:
-            code = yield from _execute(chip, line, switches_mm)
+            code = yield from _execute(chip, line)
             if chip.stall_until_s > chip.now:
                 yield chip.stall_until_s
             chip.say(f"error:{code}\r\n" if code else "ok\r\n")
 
 
-def _execute(chip: Chip, raw: bytes, switches_mm: Vector | None) -> Answer:
+def _execute(chip: Chip, raw: bytes) -> Answer:
     try:
         line = clean_line(raw)
     except GcodeError as error:
@@ -66,7 +65,7 @@ def _execute(chip: Chip, raw: bytes, switches_mm: Vector | None) -> Answer:
     if not line:
         return 0
     if line[0] == "$":
-        return (yield from run_command(chip, line, switches_mm))
+        return (yield from run_command(chip, line))
     if chip.state in (State.ALARM, State.JOG):
         return LOCKED
     return (yield from run_gcode(chip, line))

@@ -131,23 +131,32 @@ def _until_idle(chip: Chip) -> Routine:
 
 
 def _probe(chip: Chip, action: Probe) -> Routine:
-    """There is no contact to be found: towards it the whole way, away from it not at all."""
+    """Move until the contact is as it is looked for, or to the end."""
     yield from synchronize(chip)
     if chip.abort:
         return
-    if action.away:
+    chip.probed = False
+    if chip.contact != action.away:
         chip.alarm = 4
         yield from execute_realtime(chip)
         chip.interpreter.modal.position_mm = chip.stepper.position_mm
         return
+    chip.probe_for = not action.away
     yield from move(chip, action.move)
-    yield from synchronize(chip)
+    chip.signals |= Signal.START
+    yield from _until_idle(chip)
     if chip.abort:
         return
-    if action.alarm:
+    yield from _probed(chip, action)
+
+
+def _probed(chip: Chip, action: Probe) -> Routine:
+    if not chip.probed and action.alarm:
         chip.alarm = 5
-        yield from execute_realtime(chip)
-    else:
-        chip.probe_mm, chip.probed = chip.stepper.position_mm, False
+    elif not chip.probed:
+        chip.probe_mm = chip.stepper.position_mm
+    chip.probe_for, chip.holding = None, False
+    yield from execute_realtime(chip)
+    chip.stepper.stop(chip.now)
     chip.interpreter.modal.position_mm = chip.stepper.position_mm
     chip.say(status.probe(chip))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from firmware_protocol.grbl.simulator import firmware
 from firmware_protocol.grbl.simulator.chip import Chip, Signal, State
+from firmware_protocol.grbl.simulator.events import AllOpen, HardwareReset, Pin, PlugIn, Touch, read_event
 from firmware_protocol.grbl.simulator.faults import (
     BrownOut,
     DropByte,
@@ -14,29 +16,33 @@ from firmware_protocol.grbl.simulator.faults import (
     Hang,
     HardLimit,
     LoseOk,
+    SlowUsb,
     Timed,
     Unplug,
 )
+from firmware_protocol.grbl.simulator.inputs import Inputs, Switch
 from firmware_protocol.grbl.simulator.lookahead import Vector
-from firmware_protocol.grbl.simulator.modal import Memory
+from firmware_protocol.grbl.simulator.modal import HERE, Memory
 from firmware_protocol.grbl.simulator.realtime import Routine, Wait
 from firmware_protocol.grbl.simulator.settings import Settings
 from firmware_protocol.grbl.simulator.wire import Outbound
 from firmware_protocol.ink import Ink, PenRule, Polyline
 
 _NEVER = float("inf")
+_FEEL_S = 0.001
+"""How often inputs that depend on the place are looked at while the machine moves."""
 
 
 class GrblSimulator:
     """Bytes and the time come in, bytes and ink come out.
 
-    Not modelled: probe contact (G38.2 and G38.3 find none), laser mode ($32), single steps and lost steps, the
-    accessory bytes but for coolant and spindle percentage, closed limit switches other than those of homing and
-    `HardLimit`, the firmware's rare race of a reset without its alarm, and `$N2=` and `$N3=`, which here do nothing.
+    Not modelled: laser mode ($32), single steps and lost steps, mist coolant (a build of its own), the firmware's
+    rare race of a reset without its alarm, and `$N2=` and `$N3=`, which here do nothing.
 
     settings: `$` numbers to values that differ from the generic defaults. pen: when it touches the sheet.
     boot_s: how long the boot loader is deaf after `open`. switches_mm: where the homing switches lie, from the place
-    where the machine was switched on; without it `$H` ends in ALARM:9. Raises ValueError for an unknown setting.
+    where the machine was switched on, each at the end that $23 seeks; without it `$H` ends in ALARM:9.
+    Raises ValueError for an unknown setting.
     """
 
     def __init__(
@@ -50,9 +56,12 @@ class GrblSimulator:
     ) -> None:
         self._faults = tuple(faults)
         self._timed_faults = [f for f in faults if isinstance(f, Hang | BrownOut | HardLimit | Unplug)]
-        self._boot_s, self._switches_mm = boot_s, switches_mm
+        self._boot_s = boot_s
         self._outbound = Outbound()
         self._chip = Chip(Memory(Settings(settings)), Ink(pen or PenRule()), self._say)
+        self._chip.inputs = _homing_switches(self._chip.settings, switches_mm)
+        self._origin_mm = HERE
+        self._asked: list[Fault] = []
         self._main: Routine | None = None
         self._due: Wait = None
         self._polling = False
@@ -95,6 +104,8 @@ class GrblSimulator:
         self._run_until(now)
         self.unplugged = False
         self._sent = self._oks = 0
+        self._asked = []
+        self._set_latency(next((fault.latency_s for fault in self._faults if isinstance(fault, SlowUsb)), 0.0))
         self._timed = [(now + f.at_s, f) for f in self._timed_faults if f.at_s is not None]
         self._timed.sort(key=_moment)
         self._outbound.unplug(now)
@@ -112,6 +123,26 @@ class GrblSimulator:
         """Let the time pass up to `now`. Returns what has reached the host and was not returned before."""
         self._run_until(now)
         return b"" if self.unplugged else self._outbound.arrived(now)
+
+    def happen(self, sentence: str, now: float) -> None:
+        """Something happens to the machine: one of `events.SENTENCES`. Raises ValueError for any other."""
+        event = read_event(sentence)
+        self._run_until(now)
+        match event:
+            case HardwareReset(deaf_s):
+                self._power_on(deaf_s)
+            case PlugIn():
+                self.unplugged = False
+            case SlowUsb(latency_s):
+                self._set_latency(latency_s)
+            case DropByte(index) | FlipByte(index):
+                self._asked.append(replace(event, index=self._sent + index))
+            case LoseOk(index):
+                self._asked.append(replace(event, index=self._oks + index))
+            case Hang() | BrownOut() | Unplug():
+                self._happen(event)
+            case _:
+                self._touch(event)
 
     def next_time(self) -> float | None:
         """When something will next change or be said; None: nothing more until something is received."""
@@ -131,6 +162,8 @@ class GrblSimulator:
             return fault
         chip = self._chip
         due = _NEVER if self._due is None else max(self._due, chip.stall_until_s)
+        if chip.feels:
+            due = min(due, chip.now + _FEEL_S)
         return min(due, chip.inbound.next_s(), chip.stepper.next_s(), fault)
 
     def _step(self, now: float) -> None:
@@ -142,6 +175,8 @@ class GrblSimulator:
             if was_moving and not chip.stepper.moving:
                 chip.signals |= Signal.STOPPED
                 chip.drivers_off()
+            if chip.inputs.depend_on_place:
+                happened |= chip.feel()
             happened |= chip.inbound.absorb(now)
             if happened and self._polling:
                 self._due = now
@@ -159,13 +194,13 @@ class GrblSimulator:
         chip.inbound.deaf_until_s = chip.stall_until_s if deaf_s else 0.0
         chip.inbound.reading = False
         chip.restart()
-        self._main = firmware.run(chip, self._switches_mm)
+        self._main = firmware.run(chip)
         self._due, self._polling = chip.now, False
 
     def _say(self, text: str) -> None:
         if text == "ok\r\n":
             self._oks += 1
-            if LoseOk(self._oks - 1) in self._faults:
+            if LoseOk(self._oks - 1) in (*self._faults, *self._asked):
                 return
         ready_s = self._outbound.send(text.encode("latin-1"), self._chip.now)
         self._chip.stall_until_s = max(self._chip.stall_until_s, ready_s)
@@ -177,12 +212,29 @@ class GrblSimulator:
 
     def _damaged(self, data: bytes) -> bytes:
         first, self._sent = self._sent, self._sent + len(data)
-        for fault in sorted((f for f in self._faults if isinstance(f, DropByte | FlipByte)), key=lambda f: -f.index):
+        damages = [f for f in (*self._faults, *self._asked) if isinstance(f, DropByte | FlipByte)]
+        for fault in sorted(damages, key=lambda f: -f.index):
             at = fault.index - first
             if 0 <= at < len(data):
                 flipped = bytes([data[at] ^ fault.bits]) if isinstance(fault, FlipByte) else b""
                 data = data[:at] + flipped + data[at + 1 :]
         return data
+
+    def _set_latency(self, seconds: float) -> None:
+        self._outbound.usb_s = self._chip.inbound.usb_s = seconds
+
+    def _touch(self, event: Touch) -> None:
+        chip = self._chip
+        if isinstance(event, AllOpen):
+            self._origin_mm = chip.here
+        chip.inputs = chip.inputs.after(event, self._origin_mm)
+        if self._main is None:
+            return
+        if isinstance(event, Pin) and event.low:
+            chip.press(event.name)
+        chip.feel()
+        if self._polling:
+            self._due = chip.now
 
     def _happen(self, fault: Timed) -> None:
         chip = self._chip
@@ -200,3 +252,9 @@ class GrblSimulator:
 
 def _moment(pair: tuple[float, Timed]) -> float:
     return pair[0]
+
+
+def _homing_switches(settings: Settings, places_mm: Vector | None) -> Inputs:
+    downwards = int(settings[23])
+    places = enumerate(places_mm or ())
+    return Inputs(switches={axis: Switch(place, upwards=not downwards >> axis & 1) for axis, place in places})

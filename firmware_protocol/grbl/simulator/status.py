@@ -76,7 +76,9 @@ def _feed(chip: Chip) -> str:
 
 
 def _pins(chip: Chip) -> list[str]:
-    letters = "".join("XYZ"[axis] for axis in sorted(chip.closed_axes))
+    letters = "P" if chip.contact else ""
+    letters += "".join("XYZ"[axis] for axis in sorted(chip.limits))
+    letters += "".join(pin[0].upper() for pin in ("reset", "hold", "start") if pin in chip.inputs.pins)
     return [f"Pn:{letters}"] if letters else []
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable
+from math import ceil, floor
 
 BYTE_S = 10 / 115200
 RING_BYTES = 128
@@ -29,6 +30,8 @@ class Inbound:
         self._free_s = 0.0
         self._ring = bytearray()
         self._partial = bytearray()
+        self.usb_s = 0.0
+        """What is written waits for the next multiple of this, as in a slow USB converter."""
         self.reading = False
         """The main loop waits for input: it takes bytes out of the ring as they come."""
         self.deaf_until_s = 0.0
@@ -37,7 +40,7 @@ class Inbound:
 
     def send(self, data: bytes, now: float) -> None:
         """The host writes: the bytes follow those that are still on the wire."""
-        start = max(now, self._free_s)
+        start = max(_next_packet_s(now, self.usb_s), self._free_s)
         for piece in _PIECES.findall(data):
             self._coming.append((start + BYTE_S, piece))
             start += len(piece) * BYTE_S
@@ -118,6 +121,8 @@ class Outbound:
     def __init__(self) -> None:
         self._going: deque[tuple[float, bytes]] = deque()
         self._free_s = 0.0
+        self.usb_s = 0.0
+        """What has come waits for the next multiple of this, as in a slow USB converter."""
 
     def send(self, data: bytes, now: float) -> float:
         """The controller prints. Returns the time until which it has to wait for its transmit buffer of 104 bytes."""
@@ -131,11 +136,13 @@ class Outbound:
         if not self._going:
             return _NEVER
         first_s, data = self._going[0]
-        return first_s + (len(data) - 1) * BYTE_S
+        return _next_packet_s(first_s + (len(data) - 1) * BYTE_S, self.usb_s)
 
     def arrived(self, now: float) -> bytes:
         """The bytes that have reached the host up to `now`; each is returned once."""
         out = bytearray()
+        if self.usb_s:
+            now = floor(now / self.usb_s + _EPSILON_S) * self.usb_s
         while self._going and self._going[0][0] <= now + _EPSILON_S:
             first_s, data = self._going.popleft()
             count = int((now - first_s + _EPSILON_S) / BYTE_S) + 1
@@ -149,3 +156,7 @@ class Outbound:
         """Nothing is on the wire any more."""
         self._going.clear()
         self._free_s = now
+
+
+def _next_packet_s(now: float, usb_s: float) -> float:
+    return ceil(now / usb_s - _EPSILON_S) * usb_s if usb_s else now
