@@ -7,8 +7,7 @@ import os
 import sys
 
 from daemon import __version__
-from daemon.cli import control, draw, models, plan, serve, simulate, status
-from daemon.cli.options import add_machine, add_places
+from daemon.cli import simulate_ctl
 from daemon.errors import LinedrawError
 
 EXAMPLES = """examples:
@@ -27,7 +26,10 @@ def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code; errors are one sentence on stderr."""
     # onnxruntime reports home from its first import on unless this is set before it.
     os.environ["ORT_DISABLE_TELEMETRY"] = "1"
-    args = _parser().parse_args(arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    # What happens to a simulated machine that moves has to happen now: it waits for no other command to be loaded.
+    parser = _event_parser() if arguments[:2] == ["simulate", "ctl"] else _parser()
+    args = parser.parse_args(arguments)
     try:
         return int(args.run(args))
     except LinedrawError as error:
@@ -41,7 +43,17 @@ def main(arguments: list[str] | None = None) -> int:
         return 130
 
 
+def _event_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="linedrawd")
+    machines = parser.add_subparsers().add_parser("simulate").add_subparsers()
+    simulate_ctl.add_parser(machines)
+    return parser
+
+
 def _parser() -> argparse.ArgumentParser:
+    from daemon.cli import control, draw, models, plan, serve, simulate, status  # noqa: PLC0415
+    from daemon.cli.options import add_machine, add_places  # noqa: PLC0415
+
     parser = argparse.ArgumentParser(
         prog="linedrawd",
         description="Draws line drawings with a pen plotter: drop a picture into a folder, the machine draws it.",
