@@ -1,0 +1,134 @@
+"""One program on its way to a control that does not say what it has drawn: what it has, and what follows from that."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from itertools import accumulate, pairwise
+from typing import TypeAlias
+
+from firmware_protocol.errors import LocalProtocolError, ProtocolError
+from firmware_protocol.session import Ended, JobLine, Verdict
+from firmware_protocol.strokes import strokes_before, strokes_touched
+
+Times: TypeAlias = Callable[[Sequence[str]], Sequence[float]]
+"""When each line of a program will have been drawn, in s from its start; `motion.line_times_s` is one."""
+
+FASTEST = 4.0
+"""A control is at most this many times as fast as the time model: no stops at bends, a feed override."""
+
+_PLAIN = re.compile(r"[ -~]*")
+
+
+class Job:
+    """lines: with strokes that never fall. Raises LocalProtocolError for a line that is no plain text, or that the
+    time model cannot read.
+    """
+
+    def __init__(self, lines: Sequence[JobLine], *, times: Times, line_end: bytes) -> None:
+        texts = [line.text for line in lines]
+        self._seconds = _seconds(texts, times)
+        self._strokes = [line.stroke for line in lines]
+        self._line_end = line_end
+        self.blocks = [text.encode("ascii") + line_end for text in texts]
+        self._ends = list(accumulate(map(len, self.blocks)))
+        self._rest = b""
+        self._earliest: list[float] = []
+        self._cut = len(texts)
+        self.begun = 0
+        """Blocks of which at least a byte has been handed over."""
+        self.handed = 0
+        """Whole blocks handed over."""
+        self.proven = 0
+        """Blocks that the control has certainly executed."""
+        self.sent_bytes = 0
+        self.drawn_at = float("-inf")
+        """When all that has been handed over will have been drawn, by the time model."""
+
+    def __len__(self) -> int:
+        """Blocks of the program that will have been handed over, those behind a cut not counted."""
+        return self._cut
+
+    @property
+    def empty(self) -> bool:
+        """Nothing is left to hand over."""
+        return self.begun == len(self.blocks) and not self._rest
+
+    def text(self, block: int) -> str:
+        return self.blocks[block].decode("ascii").rstrip()
+
+    def seconds(self, block: int) -> float:
+        """How long the control moves for this block."""
+        return self._seconds[block] if block < self._cut else 0.0
+
+    def take(self, most: int) -> bytes:
+        """The next `most` bytes at most, to be written now."""
+        taken = b""
+        while len(taken) < most and not self.empty:
+            if not self._rest:
+                self._rest = self.blocks[self.begun]
+                self.begun += 1
+            part = self._rest[: most - len(taken)]
+            self._rest = self._rest[len(part) :]
+            taken += part
+        self.sent_bytes += len(taken)
+        return taken
+
+    def arrived(self, at: float) -> None:
+        """All that has been taken has reached the control at the time `at`."""
+        for block in range(self.handed, self.begun - bool(self._rest)):
+            before = self._earliest[-1] if self._earliest else at
+            self._earliest.append(max(before, at) + self.seconds(block) / FASTEST)
+            self.drawn_at = max(self.drawn_at, at) + self.seconds(block)
+            self.handed += 1
+
+    def held_by_control(self, now: float) -> int:
+        """Bytes that a control which works must still hold, however fast it is."""
+        drawn = bisect_right(self._earliest, now)
+        return self.sent_bytes - (self._ends[drawn - 1] if drawn else 0)
+
+    def prove(self, *, bytes_held: int) -> None:
+        """The control lives: all but the last `bytes_held` bytes must have been executed."""
+        self.proven = max(self.proven, bisect_right(self._ends, self.sent_bytes - bytes_held))
+
+    def close(self, texts: Sequence[str]) -> None:
+        """What has not begun is replaced by these lines, of which none is a stroke's."""
+        self._cut = self.begun
+        self.blocks[self.begun :] = [text.encode("ascii") + self._line_end for text in texts]
+        self._ends = list(accumulate(map(len, self.blocks)))
+
+    def ended(self, verdict: Verdict, why: str) -> Ended:
+        """An end of which nothing is known but what has been proven."""
+        certain = strokes_before(self._strokes, min(self.proven, self._cut))
+        possible = strokes_touched(self._strokes, min(self.begun, self._cut))
+        return Ended(verdict, min(certain, possible), possible, position_known=False, pen_lifted=False, why=why)
+
+    def untouched(self, why: str) -> Ended:
+        """Stopped before a byte was handed over."""
+        none = strokes_touched(self._strokes, 0)
+        return Ended(Verdict.STOPPED, none, none, position_known=True, pen_lifted=False, why=why)
+
+    def drawn(self, verdict: Verdict, why: str) -> Ended:
+        """All that was handed over is drawn, by the time model."""
+        strokes = strokes_touched(self._strokes, self._cut)
+        whole = strokes if self._cut == len(self._strokes) else strokes_before(self._strokes, self._cut)
+        return Ended(verdict, whole, strokes, position_known=True, pen_lifted=True, why=why, estimated=True)
+
+
+def check_plain(texts: Sequence[str]) -> None:
+    """Raises LocalProtocolError for a line with anything but printable ASCII: control characters steer the link."""
+    for number, text in enumerate(texts, 1):
+        if not _PLAIN.fullmatch(text):
+            raise LocalProtocolError(f"line {number} ({text[:60]!r}) is no plain text: remove what is not ASCII")
+
+
+def _seconds(texts: Sequence[str], times: Times) -> list[float]:
+    check_plain(texts)
+    try:
+        ends = list(times(texts))
+    except ProtocolError as error:
+        raise LocalProtocolError(f"the program is none for an EMCO control: {error}") from error
+    if len(ends) != len(texts):
+        raise LocalProtocolError(f"the time model knows {len(ends)} of {len(texts)} lines: plan the drawing again")
+    return [after - before for before, after in pairwise([0.0, *ends])]
