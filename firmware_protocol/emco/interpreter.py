@@ -52,7 +52,8 @@ class Interpreter:
     """
 
     def __init__(self, dialect: Dialect | None = None, *, room: Room | None = None, at_mm: Vector = (0, 0, 0)) -> None:
-        self._dialect, self._room = dialect, room
+        self.dialect, self._room = dialect, room
+        """Known at the latest behind the first line."""
         self._lines = 0
         self._motion: float | None = None
         self._feed_mm_min = 0.0
@@ -70,24 +71,24 @@ class Interpreter:
             return []
         if self._lines == 2 and self._named(line):
             return []
-        assert self._dialect is not None
-        return self._execute(read_block(line, self._dialect), line)
+        assert self.dialect is not None
+        return self._execute(read_block(line, self.dialect), line)
 
     def _begin(self, line: str) -> None:
         try:
             found, _ = dialect_of(line)
         except LocalProtocolError:
             raise Alarm(f"no program begins with {line[:40]!r}") from None
-        if self._dialect is not None and found is not self._dialect:
-            raise Alarm(f"the control speaks {self._dialect.name}, the program is for {found.name}")
-        self._dialect = found
+        if self.dialect is not None and found is not self.dialect:
+            raise Alarm(f"the control speaks {self.dialect.name}, the program is for {found.name}")
+        self.dialect = found
 
     def _named(self, line: str) -> bool:
-        if self._dialect is SIEMENS:
+        if self.dialect is SIEMENS:
             return False
-        assert self._dialect is not None
+        assert self.dialect is not None
         try:
-            self._dialect.check_name(line.strip())
+            self.dialect.check_name(line.strip())
         except LocalProtocolError:
             raise Alarm(f"no program number: {line[:40]}") from None
         return True
@@ -110,10 +111,10 @@ class Interpreter:
         return self._move(values, line) if any(axis in values for axis in _AXES) else []
 
     def _prepare(self, code: float) -> None:
-        assert self._dialect is not None
+        assert self.dialect is not None
         if code in _MOTION:
             self._motion = code
-        elif code not in _SETTINGS and f"G{code:g}" != self._dialect.metric:
+        elif code not in _SETTINGS and f"G{code:g}" != self.dialect.metric:
             raise Alarm(f"G{code:g} is not known")
 
     def _miscellaneous(self, code: float) -> None:
