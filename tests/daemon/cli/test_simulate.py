@@ -6,13 +6,19 @@ import argparse
 import json
 import os
 import signal
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
 import pytest
 
 from daemon.cli import simulate
-from daemon.errors import DiskTrouble, SettingsError
+from daemon.cli.__main__ import main
+from daemon.errors import DiskTrouble, MachineFault, SettingsError
+from daemon.machine.pseudo_terminal import serve
+from firmware_protocol.grbl.simulator.events import SENTENCES
+from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 
 
 def parse(*arguments: str) -> argparse.Namespace:
@@ -59,3 +65,44 @@ def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> Non
     with pytest.raises(SystemExit):
         parse("--help")
     assert "linedrawd simulate grbl --pty /tmp/plotter" in capsys.readouterr().out
+
+
+def test_an_event_is_told_in_words_with_or_without_quotes(tmp_path: Path) -> None:
+    link = tmp_path / "grbl"
+    stop_fd, stop = os.pipe()
+    simulator = GrblSimulator()
+    thread = threading.Thread(target=serve, args=(simulator, link), kwargs={"stop_fd": stop_fd})
+    thread.start()
+    try:
+        pause = threading.Event()
+        while not link.is_symlink():
+            pause.wait(0.005)
+        assert main(["simulate", "ctl", str(link), "unplug"]) == 0
+        assert simulator.unplugged
+        assert main(["simulate", "ctl", str(link), "plug", "in"]) == 0
+        assert not simulator.unplugged
+        assert main(["simulate", "ctl", str(link), "switch x closes at -4.000 mm"]) == 0
+        assert main(["simulate", "ctl", str(link), "explode"]) == MachineFault.exit_code
+    finally:
+        os.write(stop, b"!")
+        thread.join(5)
+        os.close(stop)
+        os.close(stop_fd)
+
+
+def test_the_event_command_loads_no_settings_and_no_arrays() -> None:
+    program = (
+        "import sys; from daemon.cli.__main__ import main; main(['simulate', 'ctl', '/nowhere/grbl', 'hang']); "
+        "print({'pydantic', 'serial', 'numpy', 'daemon.service'} & set(sys.modules))"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert found.stdout == "set()\n"
+    assert "no simulated machine listens beside /nowhere/grbl" in found.stderr
+
+
+def test_the_help_of_an_event_names_all_events(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["simulate", "ctl", "--help"])
+    told = " ".join(capsys.readouterr().out.split())
+    plain = {"slow usb T ms": "slow usb 16 ms", "flip byte [N] [bits B]": "flip byte [N] [bits 0x01]"}
+    assert [sentence for sentence in SENTENCES if plain.get(sentence, sentence) not in told] == []

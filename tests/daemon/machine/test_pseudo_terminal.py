@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import select
+import socket
+import stat
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,13 +13,15 @@ from pathlib import Path
 
 import pytest
 
-from daemon.errors import SettingsError
+from daemon.errors import MachineFault, NoMachine, SettingsError
 from daemon.machine.pseudo_terminal import serve
+from daemon.machine.simulator_control import socket_of, tell
 from firmware_protocol.grbl.simulator.simulator import GrblSimulator
+from firmware_protocol.simulator import Simulator
 
 
 @contextmanager
-def served(simulator: GrblSimulator, link: Path) -> Iterator[None]:
+def served(simulator: Simulator, link: Path) -> Iterator[None]:
     """Serve in a thread until the block ends."""
     stop_fd, stop = os.pipe()
     thread = threading.Thread(target=serve, args=(simulator, link), kwargs={"stop_fd": stop_fd})
@@ -95,3 +99,83 @@ def test_a_link_of_an_earlier_run_is_replaced_and_a_file_is_not(tmp_path: Path) 
     with pytest.raises(SettingsError, match="choose a path that is free"):
         serve(GrblSimulator(), file, stop_fd=0)
     assert file.read_text() == "mine"
+
+
+def test_a_sentence_beside_the_link_happens_to_the_machine(tmp_path: Path) -> None:
+    link = tmp_path / "grbl"
+    with served(GrblSimulator(settings={21: 1}), link), client(link) as fd:
+        read_until(fd, BANNER_END)
+        tell(link, "limit x closed")
+        assert read_until(fd, b"ALARM:1\r\n") == b"ALARM:1\r\n"
+
+
+def test_a_sentence_that_is_not_understood_is_answered_with_all_that_are(tmp_path: Path) -> None:
+    link = tmp_path / "grbl"
+    with (
+        served(GrblSimulator(), link),
+        pytest.raises(MachineFault, match="no event 'explode': write one of all inputs"),
+    ):
+        tell(link, "explode")
+
+
+def test_only_its_own_user_reaches_the_machine_and_nothing_stays_behind(tmp_path: Path) -> None:
+    link = tmp_path / "grbl"
+    with served(GrblSimulator(), link):
+        assert stat.S_IMODE(socket_of(link).stat().st_mode) == 0o600
+    assert not socket_of(link).exists()
+    with pytest.raises(NoMachine, match="linedrawd simulate grbl"):
+        tell(link, "hang")
+
+
+def test_whoever_connects_and_says_nothing_stops_no_machine(tmp_path: Path) -> None:
+    link = tmp_path / "grbl"
+    with served(GrblSimulator(), link), client(link) as fd, socket.socket(socket.AF_UNIX) as silent:
+        silent.connect(str(socket_of(link)))
+        assert read_until(fd, BANNER_END).endswith(BANNER_END)
+        tell(link, "all inputs open")
+
+
+def test_an_unplugged_machine_is_the_end_of_the_file_and_comes_back_reset(tmp_path: Path) -> None:
+    link = tmp_path / "grbl"
+    with served(GrblSimulator(), link):
+        with client(link) as fd:
+            read_until(fd, BANNER_END)
+            tell(link, "unplug")
+            assert select.select([fd], [], [], 5)[0] == [fd]
+            assert ended(fd)
+        assert not link.is_symlink()
+        tell(link, "plug in")
+        pause = threading.Event()
+        while not link.is_symlink():
+            pause.wait(0.005)
+        with client(link) as fd:
+            assert read_until(fd, BANNER_END).endswith(BANNER_END)
+
+
+def ended(fd: int) -> bool:
+    try:
+        return os.read(fd, 100) == b""
+    except OSError:
+        return True
+
+
+class Plain:
+    """A simulated machine that nothing can happen to."""
+
+    now, ink, unplugged = 0.0, (), False
+
+    def open(self, now: float) -> None: ...
+
+    def receive(self, data: bytes, now: float) -> None: ...
+
+    def advance(self, now: float) -> bytes:
+        return b""
+
+    def next_time(self) -> float | None:
+        return None
+
+
+def test_a_machine_without_events_says_so(tmp_path: Path) -> None:
+    link = tmp_path / "plain"
+    with served(Plain(), link), pytest.raises(MachineFault, match="nothing can happen"):
+        tell(link, "hang")
