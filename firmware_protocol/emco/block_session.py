@@ -84,7 +84,7 @@ class BlockSession:
         job, again = talk.job, self._again
         self._owed, self._again = True, False
         data = job.blocks[job.handed] if again else job.take(len(job.blocks[job.handed]))
-        self._late_at = max(now, job.drawn_at + job.seconds(job.handed)) + self._answer_within_s
+        self._late_at = max(now, job.drawn_at) + job.seconds(job.handed) + self._answer_within_s
         return data
 
     def start(self, job: Sequence[JobLine], now: float) -> None:
