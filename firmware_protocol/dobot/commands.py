@@ -202,7 +202,11 @@ def index_of(packet: Packet) -> int:
 
 def text_of(written: Command) -> str:
     """A command in one line: its name, whole numbers as they are, the others with three decimals."""
-    words = [f"{round(v, 3) + 0.0:.3f}" if isinstance(v, float) else str(v) for v in written.values]
+    codes = _codes(written.kind.writes or "")
+    words = [
+        f"{round(float(value), 3) + 0.0:.3f}" if code == "f" else str(value)
+        for value, code in zip(written.values, codes, strict=False)
+    ]
     return " ".join([written.kind.name, *words])
 
 
@@ -255,6 +259,8 @@ def _text_bytes(kind: Kind, values: Values) -> bytes:
 
 def _codes(structure: str) -> str:
     """One letter a field: `<B2f` becomes `Bff`."""
+    if structure == TEXT:
+        return "s"
     codes, count = "", ""
     for letter in structure.lstrip("<"):
         if letter.isdecimal():
