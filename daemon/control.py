@@ -6,9 +6,11 @@ import json
 import os
 import selectors
 import socket
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeAlias, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -18,17 +20,38 @@ LINE_BYTES = 4096
 CONNECTIONS = 32
 """Beyond these the oldest is closed: whoever connects and says nothing keeps nobody else out."""
 ANSWER_WITHIN_S = 15.0
+MOVING_AT_ONCE = 8
+MOVED_WITHIN_S = 900.0
+"""Homing and a long frame take their time."""
 _PATH_BYTES = 107
 """sun_path, without its closing zero."""
 
 
+MachineOrderName: TypeAlias = Literal["check", "home", "origin", "park", "frame", "pen up", "pen down", "jog"]
+MACHINE_ORDERS: tuple[MachineOrderName, ...] = get_args(MachineOrderName)
+"""These are obeyed by the machine itself, between two drawings."""
+
+
 class Order(BaseModel):
-    """What a person wants. `job` is for cancel only."""
+    """What a person wants. job: of cancel and frame. at_once: of pause. x_mm, y_mm: of jog. seconds: of pen down."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    order: Literal["ping", "next", "stop", "go", "cancel"]
+    order: Literal["ping", "next", "stop", "go", "cancel", "pause", "resume"] | MachineOrderName
     job: str = Field(default="", max_length=200)
+    at_once: bool = False
+    x_mm: float = Field(default=0.0, ge=-10000, le=10000)
+    y_mm: float = Field(default=0.0, ge=-10000, le=10000)
+    seconds: float = Field(default=10.0, gt=0, le=600)
+
+    @property
+    def moves(self) -> bool:
+        """It takes as long as the machine does."""
+        return self.order in MACHINE_ORDERS
+
+
+class NoDaemon(LinedrawError):
+    """Nobody answers at the control socket."""
 
 
 class Answer(BaseModel):
@@ -39,7 +62,10 @@ class Answer(BaseModel):
 
 
 class ControlServer:
-    """Answers on a Unix socket until `stop`, in one thread; `obey` says what was done or raises LinedrawError."""
+    """Answers on a Unix socket until `stop`; `obey` says what was done or raises LinedrawError.
+
+    One thread listens. An order that moves the machine has a thread of its own, so that `stop` is heard meanwhile.
+    """
 
     def __init__(self, path: Path, obey: Callable[[Order], str]) -> None:
         """Only for the one daemon of a state folder: an old socket in the way is removed. Raises DiskTrouble."""
@@ -50,6 +76,7 @@ class ControlServer:
         self._selector.register(self._socket, selectors.EVENT_READ)
         self._selector.register(self._wake_read, selectors.EVENT_READ)
         self._said: dict[socket.socket, bytes] = {}
+        self._moving: list[threading.Thread] = []
 
     def run(self) -> None:
         while True:
@@ -85,15 +112,21 @@ class ControlServer:
             self._drop(connection)
 
     def _answer(self, connection: socket.socket, line: bytes, *, whole: bool) -> None:
-        answer = (
-            _obeyed(line, self._obey) if whole else Answer(ok=False, words=f"an order has {LINE_BYTES} bytes at most")
-        )
-        try:
-            connection.send(answer.model_dump_json().encode() + b"\n")
-        except OSError:
-            pass
-        finally:
-            self._drop(connection)
+        order = _order(line) if whole else Answer(ok=False, words=f"an order has {LINE_BYTES} bytes at most")
+        del self._said[connection]
+        self._selector.unregister(connection)
+        if isinstance(order, Order) and order.moves:
+            self._answer_later(connection, order)
+        else:
+            _say(connection, order if isinstance(order, Answer) else _obeyed(order, self._obey))
+
+    def _answer_later(self, connection: socket.socket, order: Order) -> None:
+        self._moving = [thread for thread in self._moving if thread.is_alive()]
+        if len(self._moving) >= MOVING_AT_ONCE:
+            return _say(connection, Answer(ok=False, words="the machine is busy with other orders: wait for them"))
+        act = threading.Thread(target=lambda: _say(connection, _obeyed(order, self._obey)), daemon=True, name="order")
+        self._moving.append(act)
+        act.start()
 
     def _drop(self, connection: socket.socket) -> None:
         del self._said[connection]
@@ -108,15 +141,28 @@ class ControlServer:
         self._path.unlink(missing_ok=True)
         os.close(self._wake_read)
         os.close(self._wake_write)
+        for thread in self._moving:
+            thread.join(ANSWER_WITHIN_S)
 
 
-def _obeyed(line: bytes, obey: Callable[[Order], str]) -> Answer:
+def _order(line: bytes) -> Order | Answer:
     try:
-        return Answer(ok=True, words=obey(Order.model_validate_json(line)))
+        return Order.model_validate_json(line)
     except ValidationError as error:
         return Answer(ok=False, words=f"no order that is known here ({error.errors()[0]['msg']})")
+
+
+def _obeyed(order: Order, obey: Callable[[Order], str]) -> Answer:
+    try:
+        return Answer(ok=True, words=obey(order))
     except LinedrawError as error:
         return Answer(ok=False, words=str(error))
+
+
+def _say(connection: socket.socket, answer: Answer) -> None:
+    with connection, suppress(OSError):
+        connection.settimeout(ANSWER_WITHIN_S)
+        connection.sendall(answer.model_dump_json().encode() + b"\n")
 
 
 def _bound(path: Path) -> socket.socket:
@@ -143,16 +189,16 @@ def _check_length(path: Path) -> None:
 
 
 def give_order(path: Path, order: Order) -> str:
-    """Ask the running daemon. Returns what it says; raises LinedrawError when it refuses or does not run."""
+    """Ask the running daemon. Returns what it says; raises LinedrawError when it refuses, NoDaemon when none runs."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
-        connection.settimeout(ANSWER_WITHIN_S)
+        connection.settimeout(MOVED_WITHIN_S if order.moves else ANSWER_WITHIN_S)
         try:
             connection.connect(str(path))
             connection.sendall(order.model_dump_json().encode() + b"\n")
             said = connection.makefile("rb").readline()
             answer = Answer.model_validate(json.loads(said))
         except (OSError, ValueError) as error:
-            raise LinedrawError(f"no daemon answers at {path} ({error}): start it, or give its --state-dir") from None
+            raise NoDaemon(f"no daemon answers at {path} ({error}): start it, or give its --state-dir") from None
     if not answer.ok:
         raise LinedrawError(answer.words)
     return answer.words

@@ -7,24 +7,27 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from daemon import __version__
 from daemon.config import Settings
-from daemon.control import ControlServer, Order
+from daemon.control import MACHINE_ORDERS, ControlServer, Order
 from daemon.errors import SettingsError
 from daemon.intake.inbox import Inbox, InboxWatch, readable
 from daemon.jobs.desk import Desk
-from daemon.jobs.devices import opened
+from daemon.jobs.devices import moves_of, opened
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
 from daemon.jobs.journal import Journal
+from daemon.jobs.moves import PointMm
+from daemon.jobs.orders import MachineOrder, Places, outline_mm, rectangle_mm
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
+from daemon.jobs.sheet import box_origin_mm
 from daemon.machine.open import check_url
 from daemon.program.file import load_program
 from daemon.status import Diary, StatusBoard
@@ -69,13 +72,29 @@ def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None =
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
         drawing = Drawing(
             desk,
-            opened=lambda hear: opened(settings.machines[name], hear),
+            opened=lambda hear, still: opened(settings.machines[name], hear, still),
+            moves=moves_of(settings.machines[name]),
+            places=_places(settings, desk),
             load=load_program,
             measure=lambda folder: pool.measure(folder, name),
         )
         at_end.callback(drawing.close)
         planning = Planning(desk, pool, name)
         yield Parts(desk, pool, planning, drawing, Runner(desk, pool, planning, drawing), board, diary)
+
+
+def _places(settings: Settings, desk: Desk) -> Places:
+    """A frame is that of the drawing, or of the box where no job has been planned."""
+    machine = settings.machines[settings.machine_name]
+    left, bottom = box_origin_mm(settings.sheet, machine)
+    width, height = settings.sheet.box_mm
+    box = rectangle_mm((left, bottom), (left + width, bottom + height))
+
+    def frame_mm(job: str) -> Sequence[PointMm]:
+        found = desk.find(job) if job else desk.next_to_draw()
+        return outline_mm(desk.folders.path(found.id)) if found else box
+
+    return Places(machine.park_mm, frame_mm)
 
 
 @contextmanager
@@ -163,13 +182,21 @@ class Service:
     def _obey(self, order: Order) -> str:
         runner = self._parts.runner
         self._parts.diary.say("a person says", order=order.order, what=order.job or "-")
-        match order.order:
-            case "next":
-                return runner.new_sheet()
-            case "stop":
-                return runner.stop()
-            case "go":
-                return runner.go()
-            case "cancel":
-                return runner.cancel(order.job)
-        return "linedrawd runs"
+        obeyed: dict[str, Callable[[], str]] = {
+            "ping": lambda: "linedrawd runs",
+            "next": runner.new_sheet,
+            "stop": runner.stop,
+            "go": runner.go,
+            "cancel": lambda: runner.cancel(order.job),
+            "pause": lambda: runner.pause(at_once=order.at_once),
+            "resume": runner.resume,
+        }
+        if order.order in obeyed:
+            return obeyed[order.order]()
+        return runner.move(machine_order(order))
+
+
+def machine_order(order: Order) -> MachineOrder:
+    """What the machine is asked by an order of `MACHINE_ORDERS`."""
+    name = next(name for name in MACHINE_ORDERS if name == order.order)
+    return MachineOrder(name, order.x_mm, order.y_mm, order.seconds, order.job)

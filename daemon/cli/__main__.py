@@ -16,6 +16,7 @@ EXAMPLES = """examples:
   linedrawd plan house.png -o plans        # what would be drawn, without a machine
   linedrawd draw house.png --device grbl   # one picture now
   linedrawd next                           # a new sheet is in
+  linedrawd machine check                  # who answers, and what a drawing would want otherwise
   linedrawd status                         # what it does now
 
 exit codes: 0 done, 1 some pictures failed, 2 usage or settings, 3 no machine (draw), 4 machine fault
@@ -51,7 +52,7 @@ def _event_parser() -> argparse.ArgumentParser:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from daemon.cli import control, draw, models, plan, serve, simulate, status  # noqa: PLC0415
+    from daemon.cli import control, draw, machine, models, plan, serve, simulate, status  # noqa: PLC0415
     from daemon.cli.options import add_machine, add_places  # noqa: PLC0415
 
     parser = argparse.ArgumentParser(
@@ -65,7 +66,7 @@ def _parser() -> argparse.ArgumentParser:
     add_places(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, control, status, models, simulate):
+    for group in (plan, draw, control, machine, status, models, simulate):
         group.add_parser(subparsers)
     return parser
 

@@ -49,10 +49,12 @@ def run(args: argparse.Namespace) -> int:
         for picture, folder in _folders(args.pictures, args.output.absolute()):
             try:
                 _check_exists(picture)
-                pool.plan(picture.absolute(), make_folder(folder), settings.machine_name, progress=lambda _: None)
+                make_folder(folder)
+                pool.plan(picture.absolute(), folder, settings.machine_name, name=str(picture), progress=lambda _: None)
             except LinedrawError as error:
                 failed += 1
-                print(f"{picture}: {error}", file=sys.stderr)
+                named = str(error).startswith(str(picture))
+                print(error if named else f"{picture}: {error}", file=sys.stderr)
             else:
                 print(f"{picture} -> {folder}")
     return 1 if failed else 0

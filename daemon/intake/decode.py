@@ -22,16 +22,18 @@ _MOST_BYTES_PER_PX = 16
 _MOST_OVERHEAD_BYTES = 64_000_000
 
 
-def decode(path: Path, *, max_megapixels: float = 100.0) -> PageImage:
+def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> PageImage:
     """Reads a PNG, JPEG, TIFF (its first page), BMP, WebP or PNM file; its name and extension say nothing.
 
     The size is read from the header and checked before anything is decoded. The page is upright as EXIF says, alpha
-    lies over white, every depth becomes 8 bits. Raises BadPicture when the file cannot be opened (links and what is
-    no regular file are not), is none of these, is greater than max_megapixels, damaged or cut short.
+    lies over white, every depth becomes 8 bits. name: what people call the file, if not by its path. Raises BadPicture
+    when the file cannot be opened (links and what is no regular file are not), is none of these, is greater than
+    max_megapixels, damaged or cut short.
     """
-    data = _read(path, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
-    header = _checked_header(path, data, max_megapixels)
-    grey = _upright(_grey(_pixels(path, data, header), header), header.turned)
+    name = name or str(path)
+    data = _read(path, name, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
+    header = _checked_header(name, data, max_megapixels)
+    grey = _upright(_grey(_pixels(name, data, header), header), header.turned)
     height_px, width_px = grey.shape
     return PageImage(
         grey=grey,
@@ -43,56 +45,56 @@ def decode(path: Path, *, max_megapixels: float = 100.0) -> PageImage:
     )
 
 
-def _read(path: Path, *, most_bytes: int) -> bytes:
+def _read(path: Path, name: str, *, most_bytes: int) -> bytes:
     """The file's bytes. O_NONBLOCK: opening a FIFO that nobody writes would wait for ever."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
         with open(descriptor, "rb") as file:
             status = os.fstat(descriptor)
             if not stat.S_ISREG(status.st_mode):
-                raise BadPicture(f"{path} is no regular file: drop the picture itself")
+                raise BadPicture(f"{name} is no regular file: drop the picture itself")
             if status.st_size > most_bytes:
-                raise BadPicture(f"{path} has {status.st_size} bytes, at most {most_bytes} are read: make it smaller")
+                raise BadPicture(f"{name} has {status.st_size} bytes, at most {most_bytes} are read: make it smaller")
             return file.read()
     except OSError as error:
-        raise BadPicture(_why_unread(path, error)) from error
+        raise BadPicture(_why_unread(name, error)) from error
 
 
-def _why_unread(path: Path, error: OSError) -> str:
+def _why_unread(name: str, error: OSError) -> str:
     if error.errno == errno.ELOOP:
-        return f"{path} is a symbolic link, which is not followed: drop the picture itself"
-    return f"{path} cannot be read ({error.strerror}): check that it is there and mend its rights"
+        return f"{name} is a symbolic link, which is not followed: drop the picture itself"
+    return f"{name} cannot be read ({error.strerror}): check that it is there and mend its rights"
 
 
-def _checked_header(path: Path, data: bytes, max_megapixels: float) -> Header:
+def _checked_header(name: str, data: bytes, max_megapixels: float) -> Header:
     try:
         header = read_header(data)
     except ValueError as error:
-        raise BadPicture(f"{path} is no picture that can be read, {error}: save it anew as PNG") from error
+        raise BadPicture(f"{name} is no picture that can be read, {error}: save it anew as PNG") from error
     if header.width_px * header.height_px > max_megapixels * 1e6:
         raise BadPicture(
-            f"{path} is a {header.kind} of {header.width_px} x {header.height_px} px, at most {max_megapixels:g} "
+            f"{name} is a {header.kind} of {header.width_px} x {header.height_px} px, at most {max_megapixels:g} "
             "megapixels are read: make it smaller, or raise max_megapixels"
         )
     if not header.whole:
-        raise BadPicture(_damaged(path, header))
+        raise BadPicture(_damaged(name, header))
     return header
 
 
-def _pixels(path: Path, data: bytes, header: Header) -> NDArray[Any]:
+def _pixels(name: str, data: bytes, header: Header) -> NDArray[Any]:
     # JPEG holds its luma apart: decoding that alone takes a third of the memory.
     flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION if header.kind == "JPEG" else cv2.IMREAD_UNCHANGED
     try:
         pixels = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
     except cv2.error as error:
-        raise BadPicture(_damaged(path, header)) from error
+        raise BadPicture(_damaged(name, header)) from error
     if pixels is None:
-        raise BadPicture(_damaged(path, header))
+        raise BadPicture(_damaged(name, header))
     return np.asarray(pixels)
 
 
-def _damaged(path: Path, header: Header) -> str:
-    return f"{path} is a {header.kind} that is damaged, cut short or of a rare form: copy it again, or save it as PNG"
+def _damaged(name: str, header: Header) -> str:
+    return f"{name} is a {header.kind} that is damaged, cut short or of a rare form: copy it again, or save it as PNG"
 
 
 def _grey(pixels: NDArray[Any], header: Header) -> Grey:

@@ -44,6 +44,8 @@ class Desk:
         self.ending = False
         self.only = ""
         """The one job that is worked on, where a person has asked for just that."""
+        self.cut_off = False
+        """The daemon before this one was killed while it drew, so that nobody has lifted the pen."""
         self.changes = 0
         """Counts what has changed, so that a change between a look and a `wait` is not slept over."""
         self._asks_for_sheets, self._ahead = asks_for_sheets, ahead
@@ -60,6 +62,7 @@ class Desk:
             self.step(job.id, State.QUEUED, "the daemon ended while it was planning: it plans again")
         for job in self.journal.jobs(State.DRAWING):
             self.step(job.id, State.INTERRUPTED, _INTERRUPTED)
+            self.cut_off = True
             self.hold(f"job {job.id} was interrupted: look at the machine and the sheet")
         if self.held:
             self._show_held()
@@ -142,6 +145,11 @@ class Desk:
             self.step(ready[0].id, State.DRAWING)
             return ready[0]
 
+    def next_to_draw(self) -> Job | None:
+        """The planned job that comes next, None where none is planned."""
+        ready = self._worked_on(*_READY)
+        return ready[0] if ready else None
+
     def let_wait(self, words: str) -> None:
         """The planned jobs wait, and `words` say for what."""
         with self._changed:
@@ -197,6 +205,7 @@ class Desk:
 
     def go(self) -> None:
         self.journal.go()
+        self.cut_off = False
         self.say("jobs may start again")
         self.show(held="", state="idle", words="")
         self._notify()
@@ -204,6 +213,10 @@ class Desk:
     def end(self) -> None:
         """The loops come to their end."""
         self.ending = True
+        self._notify()
+
+    def wake(self) -> None:
+        """Whoever waits looks again."""
         self._notify()
 
     def wait(self, seconds: float, *, since: int | None = None) -> None:

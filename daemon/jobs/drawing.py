@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import json
+import logging
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import write_durably
 from daemon.jobs.journal import Job
+from daemon.jobs.moves import Moves
+from daemon.jobs.open_machine import InkMm, OpenMachine
+from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
 from daemon.jobs.states import State
 from daemon.shapes import Program
-from firmware_protocol.session import Accepted, Ended, Event, Ready, Verdict
+from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Sent, Verdict, Waiting
 
 IDLE_S = 1.0
 NO_MACHINE_RETRY_S = 3.0
@@ -29,57 +33,30 @@ _STATES = {Verdict.FINISHED: State.DONE, Verdict.REJECTED: State.FAILED}
 """Every other verdict leaves the job interrupted."""
 _PORT_STAYS_OPEN = {Verdict.FINISHED, Verdict.STOPPED, Verdict.REJECTED}
 
-InkMm: TypeAlias = Sequence[Sequence[tuple[float, float]]]
-
-
-class OpenMachine(Protocol):
-    """A machine whose port is open. Only `stop` may be called from another thread than the drawing one."""
-
-    @property
-    def name(self) -> str:
-        """For people: the device path or URL."""
-
-    def now(self) -> float:
-        """Seconds on the machine's clock: real for a port, simulated for a simulator."""
-
-    def connect(self) -> Ready:
-        """Wait until it has introduced itself. Raises NoMachine or MachineFault."""
-
-    def draw(self, program: Program) -> Ended:
-        """Stream the program; returns when the job is over, however it ended."""
-
-    def listen(self) -> None:
-        """Hear what came meanwhile. Raises MachineFault when the machine is no longer there or not ready."""
-
-    def line_times_s(self, program: Program) -> Sequence[float]:
-        """When each line of the program will have been drawn, in seconds from its start."""
-
-    def take_ink(self) -> InkMm | None:
-        """What the last job has drawn, where the machine is simulated."""
-
-    def stop(self) -> None:
-        """Hold at once, lift the pen, end the job."""
-
-    def close(self) -> None: ...
+Open: TypeAlias = Callable[[Callable[[Event], None], bool], OpenMachine]
+"""Opens the way to the machine; is given whom to tell what is heard, and whether nothing may move by itself."""
 
 
 class Drawing:
-    """One turn connects, draws one job, or listens to an idle machine.
+    """One turn connects, draws one job, obeys one order for the machine, or listens to an idle one.
 
-    opened: opens the way to the machine and is given whom to tell what is heard. load: reads a program file.
-    measure: compares the ink of a simulated machine with the picture of a job's folder.
+    load: reads a program file. measure: compares the ink of a simulated machine with the picture of a job's folder.
+    moves, places: what a person may have the machine do between jobs, and where that leads.
     """
 
     def __init__(
         self,
         desk: Desk,
         *,
-        opened: Callable[[Callable[[Event], None]], OpenMachine],
+        opened: Open,
         load: Callable[[Path], Program],
         measure: Callable[[Path], None],
+        moves: Moves,
+        places: Places,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
         self._desk, self._opened, self._load, self._measure, self._now = desk, opened, load, measure, now
+        self._moves, self._places, self._asked = moves, places, Asked(desk.wake)
         self._machine: OpenMachine | None = None
         self._progress: Progress | None = None
         self.missing: NoMachine | MachineFault | None = None
@@ -88,6 +65,10 @@ class Drawing:
 
     def turn(self) -> float:
         """Returns the seconds to wait for a change before the next turn."""
+        if self._asked.obey_next(self.obey):
+            return 0.0
+        if self._desk.cut_off and not self._machine and self._now() >= self._retry_at_s:
+            self._lift_what_was_cut_off()
         if self._machine is None and not self._desk.held and self._now() >= self._retry_at_s:
             self._connect()
         if self._machine is None:
@@ -99,11 +80,34 @@ class Drawing:
         self._draw(job)
         return 0.0
 
+    def ask(self, order: MachineOrder) -> str:
+        """Have the drawing thread obey an order. Called from any other; raises LinedrawError when it is refused."""
+        return self._asked.ask(order)
+
     def stop(self) -> None:
         """Break off what is being drawn, pen up. May be called from any thread."""
         machine = self._machine
         if machine:
             machine.stop()
+
+    def pause(self, *, at_once: bool) -> None:
+        """Stand still with the pen up. May be called from any thread. Raises LinedrawError where nothing is drawn."""
+        self._drawn_on().pause(at_once=at_once)
+
+    def resume(self) -> None:
+        """Go on. May be called from any thread. Raises LinedrawError where nothing is drawn."""
+        self._drawn_on().resume()
+
+    def _drawn_on(self) -> OpenMachine:
+        machine = self._machine
+        if machine is None or self._progress is None:
+            raise LinedrawError("nothing is being drawn: `linedrawd stop` keeps the next drawing from starting")
+        return machine
+
+    def end(self) -> None:
+        """No order is obeyed any more, and the port is given back."""
+        self._asked.refuse("linedrawd is ending: start it again")
+        self.close()
 
     def close(self) -> None:
         machine, self._machine = self._machine, None
@@ -112,14 +116,50 @@ class Drawing:
 
     def _connect(self) -> None:
         try:
-            self._machine = self._opened(self._hear)
-            ready = self._machine.connect()
+            self._open(still=False)
         except (NoMachine, MachineFault) as error:
             self._lost(error)
-            return
+
+    def _open(self, *, still: bool) -> None:
+        self._machine = self._opened(self._hear, still)
+        ready = self._machine.connect()
         self.missing, self._told = None, ""
         self._desk.say("the machine is ready", port=self._machine.name, firmware=ready.firmware)
-        self._desk.show(state="idle", words="", port=self._machine.name, firmware=ready.firmware)
+        state = "held" if self._desk.held else "idle"
+        self._desk.show(state=state, port=self._machine.name, firmware=ready.firmware)
+
+    def obey(self, order: MachineOrder) -> str:
+        """Do it in this thread, which draws. Raises LinedrawError when it cannot be done."""
+        still, closed = order.name in WITHOUT_MOTION, self._machine is None
+        try:
+            if closed:
+                self._open(still=still)
+            assert self._machine is not None
+            words = obey(order, self._machine, self._moves, self._places)
+        except (NoMachine, MachineFault) as error:
+            self._lost(error)
+            raise
+        if closed and still:
+            self._give_back()
+        self._desk.say(words.partition("\n")[0], order=order.name)
+        return words
+
+    def _lift_what_was_cut_off(self) -> None:
+        """Whoever killed the daemon left the pen where it was: it is lifted, and nothing else moves."""
+        try:
+            self._open(still=True)
+            assert self._machine is not None
+            lifted = self._machine.lift()
+        except NoMachine as error:
+            self._lost(error)
+            return
+        except MachineFault as error:
+            self._desk.trouble(f"the pen may still be down, it could not be lifted: {error}")
+        else:
+            words = "the pen has been lifted" if lifted else "the pen may still be down: lift it by hand"
+            self._desk.say(f"the last drawing was cut off: {words}, and nothing else moves", level=logging.WARNING)
+        self._desk.cut_off = False
+        self._give_back()
 
     def _lost(self, error: NoMachine | MachineFault) -> None:
         self._give_back()
@@ -153,7 +193,10 @@ class Drawing:
         self._progress = Progress(self._desk.show, program, self._machine.line_times_s(program))
         self._desk.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
+        self._asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
         ended = self._ended(job, program)
+        self._progress = None
+        self._asked.accept()
         self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
         self._desk.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
 
@@ -201,8 +244,22 @@ class Drawing:
             self._desk.trouble(f"the report is not complete: {error}", job=job.id)
 
     def _hear(self, event: Event) -> None:
-        if isinstance(event, Accepted) and self._progress:
-            self._progress.accepted(event.line)
+        show, say = self._desk.show, self._desk.say
+        match event:
+            case Accepted(line=line) if self._progress:
+                self._progress.accepted(line)
+            case Found(finding=finding, mended=mended):
+                cure = "has been corrected" if mended else (f"mend it by {finding.command}" if finding.command else "")
+                say(f"{finding.why}{': ' if cure else ''}{cure}", level=logging.WARNING, about=finding.about)
+            case Waiting(why=why):
+                say(why, level=logging.WARNING)
+                show(state="waiting", words=why)
+            case Paused(stroke=stroke):
+                say("paused, the pen is up", stroke=stroke)
+                show(state="paused", words="`linedrawd resume` goes on, `linedrawd stop` ends it")
+            case Sent(drawn_in_s=seconds):
+                say("everything has been sent", drawn_in_s=seconds)
+                show(words="everything has been sent, when it is drawn is an estimate", seconds_left=round(seconds, 1))
 
 
 class Progress:
@@ -218,6 +275,8 @@ class Progress:
         all_s = self._times_s[-1] if self._times_s else 0.0
         done_s = self._times_s[line] if line < len(self._times_s) else all_s
         self._show(
+            state="drawing",
+            words="",
             strokes_done=bisect_right(self._last_lines, line),
             percent=round(100 * (done_s / all_s if all_s else (line + 1) / self._lines), 1),
             seconds_left=round(all_s - done_s, 1),
@@ -232,7 +291,8 @@ def _add_to_report(path: Path, real_s: float) -> None:
 
 def _words(ended: Ended, strokes: int) -> str:
     if ended.verdict is Verdict.FINISHED:
-        return f"all {strokes} strokes are drawn"
+        estimate = ", by the time model: the machine does not say so" if ended.estimated else ""
+        return f"all {strokes} strokes are drawn{estimate}"
     pen = "the pen is up" if ended.pen_lifted else "the pen may be down"
     return (
         f"{ended.why} (of {strokes} strokes {ended.strokes_certain} are certainly drawn, none after the first "

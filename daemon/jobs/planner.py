@@ -50,11 +50,16 @@ def _silent(stage: str) -> None:
     """Tells nobody."""
 
 
-def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *, progress: Progress = _silent) -> None:
-    """Plan one picture for one machine and fill its folder. Raises LinedrawError; a failed plan leaves no program."""
-    stages = Stages(progress)
+def plan_picture(
+    source: Path, folder: Path, settings: Settings, machine: str, *, name: str = "", progress: Progress = _silent
+) -> None:
+    """Plan one picture for one machine and fill its folder. Raises LinedrawError; a failed plan leaves no program.
+
+    name: what people call the picture, if not by the path of `source`.
+    """
+    stages, name = Stages(progress), name or str(source)
     with stages("decode"):
-        given = decode(source, max_megapixels=settings.intake.max_megapixels)
+        given = decode(source, max_megapixels=settings.intake.max_megapixels, name=name)
     with stages("page"):
         readable = even_out(given)
         page = fit_line_width(readable)
@@ -67,10 +72,10 @@ def plan_picture(source: Path, folder: Path, settings: Settings, machine: str, *
     with stages("toolpath"):
         toolpath = _toolpath(drawing, page, settings.sheet, settings.machines[machine])
     with stages("program"):
-        program = program_of(toolpath, settings.machines[machine])
+        program = program_of(toolpath, settings.machines[machine], name)
         estimated_s = seconds_of(program, settings.machines[machine])
     with stages("report"):
-        _write_pictures(folder, settings, source.name, toolpath, estimated_s, (page, segmentation, graph, on_page))
+        _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, (page, segmentation, graph, on_page))
         width_px = line_width_px(readable.grey)
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
         planned = planned_report(

@@ -40,4 +40,5 @@ class Planning:
         if source is None:
             raise BadPicture(f"the picture of job {job.id} has gone from {folder}: drop it into the inbox again")
         self._desk.show(planning=job.id)
-        self._pool.plan(source, folder, self._machine, progress=lambda stage: self._desk.show(stage=stage))
+        show = self._desk.show
+        self._pool.plan(source, folder, self._machine, name=job.name, progress=lambda stage: show(stage=stage))

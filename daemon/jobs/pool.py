@@ -37,9 +37,15 @@ class Pool:
         self._worker: _Worker | None = None
         self._closed = False
 
-    def plan(self, source: Path, folder: Path, machine: str, *, progress: Callable[[str], None]) -> None:
-        """Fill the job's folder with its plan. `progress` is told the name of each stage as it begins."""
-        self._ask({"ask": "plan", "source": str(source), "folder": str(folder), "machine": machine}, progress)
+    def plan(
+        self, source: Path, folder: Path, machine: str, *, name: str = "", progress: Callable[[str], None]
+    ) -> None:
+        """Fill the job's folder with its plan. `progress` is told the name of each stage as it begins.
+
+        name: what people call the picture, if not by the path of `source`.
+        """
+        request = {"ask": "plan", "source": str(source), "name": name, "folder": str(folder), "machine": machine}
+        self._ask(request, progress)
 
     def measure(self, folder: Path, machine: str) -> None:
         """Compare the ink in `ink.json` with the picture."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from daemon.errors import LinedrawError
 from daemon.jobs.desk import DISK_RETRY_S, Desk
 from daemon.jobs.drawing import Drawing
+from daemon.jobs.orders import MachineOrder
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
@@ -30,7 +31,7 @@ class Runner:
 
     def draw_on(self) -> None:
         self._turn_on(self._drawing.turn)
-        self._drawing.close()
+        self._drawing.end()
 
     def take(self, picture: Path, name: str) -> None:
         self._desk.take(picture, name)
@@ -58,6 +59,19 @@ class Runner:
         elif before is State.DRAWING:
             self._drawing.stop()
         return f"job {self._desk.find(job_id).id} is dropped (it was {before.value})"
+
+    def pause(self, *, at_once: bool) -> str:
+        """Stand still with the pen up, at the end of the stroke or at once."""
+        self._drawing.pause(at_once=at_once)
+        return f"the machine pauses {'at once' if at_once else 'at the end of the stroke'}: `linedrawd resume` goes on"
+
+    def resume(self) -> str:
+        self._drawing.resume()
+        return "the drawing goes on"
+
+    def move(self, order: MachineOrder) -> str:
+        """Between two drawings; waits until it has been done."""
+        return self._drawing.ask(order)
 
     def end(self) -> None:
         """Hold at once, pen up; the loops come to their end."""

@@ -1,6 +1,7 @@
 """The worker process: plans pictures one after the other, asked and answered in JSON lines.
 
-A request is `{"ask": "plan" | "measure", "source": PATH, "folder": PATH, "machine": NAME, "settings": {...}}`.
+A request is `{"ask": "plan" | "measure", "source": PATH, "name": TEXT, "folder": PATH, "machine": NAME,
+"settings": {...}}`.
 Answers are `{"progress": STAGE}`, then `{"done": true}` or `{"failed": ERROR, "words": SENTENCE}`.
 Whatever is no LinedrawError, full disk or lack of memory ends the process with a traceback: the daemon starts another.
 """
@@ -89,7 +90,9 @@ def _work(planner: ModuleType, request: dict[str, Any], progress: Callable[[str]
     settings = Settings.model_validate(request["settings"])
     folder = Path(request["folder"])
     if request["ask"] == "plan":
-        planner.plan_picture(Path(request["source"]), folder, settings, request["machine"], progress=progress)
+        planner.plan_picture(
+            Path(request["source"]), folder, settings, request["machine"], name=request["name"], progress=progress
+        )
     else:
         planner.measure_ink(folder, settings, request["machine"])
 

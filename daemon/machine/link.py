@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from typing import Protocol, runtime_checkable
 
-from daemon.errors import MachineFault, NoMachine
+from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.machine.transport import Transport
 from firmware_protocol.errors import LocalProtocolError
-from firmware_protocol.session import Ended, Event, JobLine, NotReady, Ready, Session
+from firmware_protocol.session import Ended, Event, JobLine, NotReady, PausableSession, Ready, Session
 
 LIFT_WITHIN_S = 30.0
 """For an interrupted job to slow down and lift its pen."""
 
 
+@runtime_checkable
+class _Pausable(PausableSession, Protocol):
+    """Asked of a session before it is paused."""
+
+
 class Link:
-    """One session on one transport, driven by the thread that calls; only `stop` and `wake` come from others.
+    """One session on one transport, driven by the thread that calls; only `stop`, `pause`, `resume` and `wake` come
+    from others.
 
     heard: is given every event, in order, in the calling thread; it must not call back.
     A link whose job ended by a fault is over: close it and make a new one.
@@ -27,6 +36,7 @@ class Link:
         self._heard = heard
         self._stop_asked = threading.Event()
         self._woken = threading.Event()
+        self._wishes: deque[Callable[[_Pausable, float], None]] = deque()
 
     def connect(self) -> Ready:
         """Wait until the machine takes a job.
@@ -62,6 +72,7 @@ class Link:
             raise
         finally:
             self._stop_asked.clear()
+            self._wishes.clear()
 
     def listen(self, until_s: float | None) -> None:
         """Between jobs: wait until the transport's time `until_s` (None: for ever) or until `wake` or `stop`.
@@ -86,6 +97,20 @@ class Link:
         self._stop_asked.set()
         self._transport.wake()
 
+    def pause(self, *, at_once: bool) -> None:
+        """Stand still with the pen up; `Paused` is heard then. Raises LinedrawError where the session cannot."""
+        self._wish(lambda session, now: session.pause(now, at_once=at_once))
+
+    def resume(self) -> None:
+        """Go on, if it stands still. Raises LinedrawError where the session cannot."""
+        self._wish(lambda session, now: session.resume(now))
+
+    def _wish(self, act: Callable[[_Pausable, float], None]) -> None:
+        if not isinstance(self._session, _Pausable):
+            raise LinedrawError(f"{self._transport.name} cannot be paused from here: use the machine's own feed hold")
+        self._wishes.append(act)
+        self._transport.wake()
+
     def close(self) -> None:
         """Give the port back."""
         self._transport.close()
@@ -95,11 +120,20 @@ class Link:
             for event in self._events(until=until):
                 if isinstance(event, Ended):
                     return event
-                if event is None and self._stop_asked.is_set():
-                    self._session.stop(self._transport.now())
+                if event is None:
+                    self._do_what_was_asked()
         except MachineFault:
             return self._ended_by_unplugging()
         raise MachineFault(f"{self._transport.name} did not lift the pen in time: look at the machine")
+
+    def _do_what_was_asked(self) -> None:
+        now = self._transport.now()
+        while self._wishes and isinstance(self._session, _Pausable):
+            # What stands still no longer, or never did, has nothing to go on with.
+            with suppress(LocalProtocolError):
+                self._wishes.popleft()(self._session, now)
+        if self._stop_asked.is_set():
+            self._session.stop(now)
 
     def _ended_by_unplugging(self) -> Ended:
         for event in self._session.unplugged(self._transport.now()):

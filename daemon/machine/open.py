@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, TypeAlias, TypeVar
 
+from daemon.errors import LinedrawError
 from daemon.machine.link import Link
 from daemon.machine.serial_port import Framing, open_serial
 from daemon.machine.simulated import SimulatedTransport, open_simulated
 from daemon.machine.transport import Transport
-from daemon.shapes import Program
+from daemon.shapes import Program, ProgramLine
 from firmware_protocol.errors import ProtocolError
-from firmware_protocol.ink import PenRule, Polyline
-from firmware_protocol.session import Ended, Event, Ready, Session
+from firmware_protocol.ink import PenRule, Polyline, Vector
+from firmware_protocol.session import Ended, Event, Ready, Session, Status
 
 LISTEN_S = 0.05
 """Long enough for an idle controller's answer to `?`, short enough for a job that waits."""
 
+POSITION_WITHIN_S = 3.0
+"""A controller that is asked once a second has said by then where its pen is."""
+
+PlaceMm: TypeAlias = tuple[float, float]
 S = TypeVar("S", bound=Session)
 
 
@@ -27,22 +32,30 @@ class Conversation(Generic[S]):
 
     session: makes the session, given the time at which the port was opened. times: when each line of a program will
     have been drawn, in s from its start, as far as the session knows its machine; raises ProtocolError or ValueError
-    for what the model does not know. sheet_mm: where the simulated machine's ink has the sheet's corner.
+    for what the model does not know. check: what the machine says of itself, in lines for a person. sheet_mm: where the
+    simulated machine's ink has the sheet's corner. lift: raises the pen where it stands; None where the machine cannot
+    be asked to. moved: a line of a program, displaced by x and y in mm; None where programs cannot be displaced.
     """
 
     session: Callable[[float], S]
     times: Callable[[S, Sequence[str]], Sequence[float]]
-    sheet_mm: tuple[float, float] = (0.0, 0.0)
+    check: Callable[[S], Sequence[str]]
+    sheet_mm: PlaceMm = (0.0, 0.0)
+    lift: Program | None = None
+    moved: Callable[[str, PlaceMm], str] | None = None
 
 
 class OpenedMachine(Generic[S]):
-    """A machine whose port is open. Only `stop` may be called from another thread than the one that draws."""
+    """A machine whose port is open. Only `stop`, `pause` and `resume` may be called from other threads."""
 
     def __init__(self, transport: Transport, conversation: Conversation[S], *, heard: Callable[[Event], None]) -> None:
         self._transport, self._conversation = transport, conversation
         self.session = conversation.session(transport.now())
-        self._link = Link(transport, self.session, heard=heard)
+        self._heard = heard
+        self._link = Link(transport, self.session, heard=self._hear)
         self._polylines_taken = 0
+        self._corner_mm: PlaceMm = (0.0, 0.0)
+        self._position_mm: Vector | None = None
 
     @property
     def name(self) -> str:
@@ -59,7 +72,7 @@ class OpenedMachine(Generic[S]):
 
     def draw(self, program: Program) -> Ended:
         """Send the program and wait for its end. Raises MachineFault when it cannot be started."""
-        return self._link.draw(program.lines)
+        return self._link.draw(self._displaced(program).lines)
 
     def listen(self) -> None:
         """Hear what an idle machine said meanwhile. Raises MachineFault when it is gone or no longer ready."""
@@ -81,8 +94,44 @@ class OpenedMachine(Generic[S]):
         if not isinstance(transport, SimulatedTransport):
             return None
         new, self._polylines_taken = transport.ink[self._polylines_taken :], len(transport.ink)
-        x_mm, y_mm = self._conversation.sheet_mm
+        x_mm, y_mm = (a + b for a, b in zip(self._conversation.sheet_mm, self._corner_mm, strict=True))
         return [[(x - x_mm, y - y_mm) for x, y in line] for line in new]
+
+    def position_mm(self) -> Vector | None:
+        """Where the pen is, in the coordinates that programs speak before `count_from`; None when it is not said.
+
+        Raises MachineFault as `listen` does.
+        """
+        self._position_mm = None
+        until = self._transport.now() + POSITION_WITHIN_S
+        while self._position_mm is None and self._transport.now() < until:
+            self._link.listen(self._transport.now() + LISTEN_S)
+        return self._position_mm
+
+    def count_from(self, corner_mm: PlaceMm) -> None:
+        """X0 Y0 of every program from now on lies here. Raises LinedrawError where programs cannot be displaced."""
+        if self._conversation.moved is None:
+            raise LinedrawError(f"{self.name} has its origin set at the control: set it there")
+        self._corner_mm = corner_mm
+
+    def check(self) -> Sequence[str]:
+        """What the machine says of itself."""
+        at_mm = self.position_mm()
+        place = "not said" if at_mm is None else "X{:.3f} Y{:.3f} Z{:.3f} mm".format(*at_mm)
+        return [f"port: {self.name}", f"pen at: {place}", *self._conversation.check(self.session)]
+
+    def lift(self) -> bool:
+        """Raise the pen where it stands. False when it cannot be known to be up. Raises MachineFault."""
+        lift = self._conversation.lift
+        return lift is not None and self._link.draw(lift.lines).pen_lifted
+
+    def pause(self, *, at_once: bool) -> None:
+        """Stand still with the pen up, at the end of the stroke or at once. Raises LinedrawError where it cannot."""
+        self._link.pause(at_once=at_once)
+
+    def resume(self) -> None:
+        """Go on after a pause. Raises LinedrawError where the machine cannot pause."""
+        self._link.resume()
 
     def stop(self) -> None:
         """Hold at once, lift the pen, end the job. Returns at once."""
@@ -91,6 +140,18 @@ class OpenedMachine(Generic[S]):
     def close(self) -> None:
         """Give the port back."""
         self._link.close()
+
+    def _displaced(self, program: Program) -> Program:
+        moved = self._conversation.moved
+        if moved is None or self._corner_mm == (0.0, 0.0):
+            return program
+        lines = (ProgramLine(moved(line.text, self._corner_mm), line.stroke) for line in program.lines)
+        return Program(tuple(lines), program.strokes)
+
+    def _hear(self, event: Event) -> None:
+        if isinstance(event, Status):
+            self._position_mm = event.position_mm
+        self._heard(event)
 
 
 def open_machine(

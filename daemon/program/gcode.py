@@ -53,6 +53,11 @@ def write_gcode(toolpath: Toolpath, *, pen: Pen, draw_mm_s: float) -> Program:
     return Program(tuple(lines), len(toolpath.strokes))
 
 
+def lower_lines(pen: Pen) -> tuple[str, ...]:
+    """Lines that put the pen onto the sheet where it stands."""
+    return _engage(pen)
+
+
 def lift_lines(pen: Pen) -> tuple[str, ...]:
     """Lines that raise the pen whatever the controller was told before."""
     return (_HEAD, *_disengage(pen))

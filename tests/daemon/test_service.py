@@ -99,9 +99,9 @@ def test_a_bad_picture_fails_visibly_and_never_stops_the_next_one(tmp_path: Path
         daemon.drop("good.png")
         bad, good = daemon.wait_for(lambda jobs: len(jobs) == 2 and ended(jobs))
         assert (bad.state, good.state) == (State.FAILED, State.DONE)
-        assert "source.png is no picture: drop another" in daemon.log()
-        assert "source.png is no picture: drop another" in (daemon.folder(bad) / "job.log").read_text()
-    assert daemon.status()["last_error"] == "source.png is no picture: drop another"
+        assert "bad.png is no picture: drop another" in daemon.log()
+        assert "bad.png is no picture: drop another" in (daemon.folder(bad) / "job.log").read_text()
+    assert daemon.status()["last_error"] == "bad.png is no picture: drop another"
 
 
 def test_two_hundred_pictures_at_once_are_all_claimed_in_order(tmp_path: Path) -> None:

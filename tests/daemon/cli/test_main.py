@@ -54,13 +54,13 @@ def test_jobs_lists_what_was_done_without_a_daemon(home: Path, capsys: pytest.Ca
     assert first.split()[:2] == ["000001-my-house-e", "done"]
     assert r'"my \"house\" é.png"  all 2 strokes are drawn' in first
     assert second.split()[:2] == ["000002-bad", "failed"]
-    assert second.endswith("bad.png  source.png is no picture: drop another")
+    assert second.endswith("bad.png  bad.png is no picture: drop another")
 
 
 @pytest.mark.parametrize(
     ("text", "port", "code", "sentence"),
     [
-        ("bad", "sim://grbl", 1, "source.png is no picture: drop another"),
+        ("bad", "sim://grbl", 1, "house.png is no picture: drop another"),
         ("good", "/dev/does-not-exist", 3, "/dev/does-not-exist"),
         ("good", "sim://grbl?unplug=1", 4, "of 2 strokes"),
         ("good", "sim://grbl?nonsense=1", 2, "there is no option nonsense"),
@@ -94,7 +94,7 @@ def test_pictures_are_planned_into_a_folder_each_and_some_may_fail(
     assert main(["plan", *pictures, "-o", str(home / "plans")]) == 1
     said = capsys.readouterr()
     assert [line.rpartition("/")[2] for line in said.out.splitlines()] == ["house", "house-2"]
-    assert "bad.png: source.png is no picture: drop another" in said.err
+    assert said.err.splitlines()[0] == f"{home}/bad.png is no picture: drop another"
     assert "none.png: there is no such file" in said.err
     assert json.loads((home / "plans" / "house" / "strokes.json").read_text())["machine"] == "plotter"
     assert (home / "plans" / "house-2" / "program.gcode").exists()
@@ -105,7 +105,7 @@ def test_all_planned_is_success_and_leaves_no_state_folder(home: Path) -> None:
     assert {path.name for path in home.iterdir()} == {"house.png", "plans"}
 
 
-@pytest.mark.parametrize("order", [["next"], ["stop"], ["go"], ["cancel", "1"]])
+@pytest.mark.parametrize("order", [["next"], ["stop"], ["go"], ["pause"], ["resume"], ["cancel", "1"]])
 def test_an_order_without_a_daemon_fails_with_a_sentence(
     home: Path, capsys: pytest.CaptureFixture[str], order: list[str]
 ) -> None:
@@ -129,7 +129,22 @@ def test_wrong_settings_are_exit_code_2(
 
 
 @pytest.mark.parametrize(
-    "command", ["plan", "draw", "next", "stop", "go", "cancel", "status", "jobs", "models", "simulate"]
+    "command",
+    [
+        "plan",
+        "draw",
+        "next",
+        "stop",
+        "go",
+        "cancel",
+        "pause",
+        "resume",
+        "machine",
+        "status",
+        "jobs",
+        "models",
+        "simulate",
+    ],
 )
 def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str], command: str) -> None:
     with pytest.raises(SystemExit) as left:

@@ -9,17 +9,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from daemon.config import GrblMachine
 from daemon.errors import MachineFault
 from daemon.jobs.desk import Desk
-from daemon.jobs.drawing import Drawing, InkMm
+from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders
 from daemon.jobs.journal import Journal
+from daemon.jobs.moves import GrblMoves
+from daemon.jobs.open_machine import InkMm
+from daemon.jobs.orders import Places, rectangle_mm
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
 from daemon.program.file import load_program
 from daemon.shapes import Program
-from firmware_protocol.session import Accepted, Ended, Event, Ready, Verdict
+from firmware_protocol.ink import Vector
+from firmware_protocol.session import Accepted, Ended, Event, Paused, Ready, Verdict
 from tests.daemon.jobs.test_pool import PLANNER, settings_with
 
 
@@ -38,8 +43,13 @@ class InstantMachine:
     while_drawing: Callable[[], None] = lambda: None
     ink: InkMm | None = None
     heard: Callable[[Event], None] = lambda event: None
+    still: bool = False
+    lifted: int = 0
+    programs: list[list[str]] = field(default_factory=list)
+    corner_mm: tuple[float, float] = (0.0, 0.0)
 
-    def open(self, heard: Callable[[Event], None]) -> InstantMachine:
+    def open(self, heard: Callable[[Event], None], still: bool) -> InstantMachine:
+        self.still = still
         if self.missing:
             raise self.missing
         self.opened += 1
@@ -54,6 +64,7 @@ class InstantMachine:
 
     def draw(self, program: Program) -> Ended:
         self.drawn += 1
+        self.programs.append([line.text for line in program.lines])
         for line in range(len(program.lines)):
             self.heard(Accepted(line))
         self.while_drawing()
@@ -70,6 +81,25 @@ class InstantMachine:
 
     def take_ink(self) -> InkMm | None:
         return self.ink
+
+    def position_mm(self) -> Vector | None:
+        return (3.0, 4.0, 5.0)
+
+    def count_from(self, corner_mm: tuple[float, float]) -> None:
+        self.corner_mm = corner_mm
+
+    def check(self) -> Sequence[str]:
+        return ["port: instant", "firmware: Instant 1"]
+
+    def lift(self) -> bool:
+        self.lifted += 1
+        return True
+
+    def pause(self, *, at_once: bool) -> None:
+        self.heard(Paused(1))
+
+    def resume(self) -> None:
+        pass
 
     def stop(self) -> None:
         self.stops += 1
@@ -105,6 +135,8 @@ class Bench:
             opened=self.machine.open,
             load=self._load,
             measure=lambda folder: self.pool.measure(folder, "plotter"),
+            moves=GrblMoves(GrblMachine()),
+            places=Places((1.0, 2.0), lambda job: rectangle_mm((0.0, 0.0), (10.0, 20.0))),
             now=lambda: self.now_s,
         )
         self.runner = Runner(self.desk, self.pool, self.planning, self.drawing)
@@ -150,6 +182,9 @@ class Bench:
         job = self.drop(name)
         self.planning.turn()
         return job
+
+    def sayings(self) -> list[str]:
+        return [words for words, _ in self.said]
 
     def states(self) -> list[str]:
         return [job.state.value for job in self.journal.jobs()]

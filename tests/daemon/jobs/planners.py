@@ -31,10 +31,12 @@ G0 X0 Y0
 
 
 def plan_picture(
-    source: Path, folder: Path, settings: Settings, machine: str, *, progress: Callable[[str], None]
+    source: Path, folder: Path, settings: Settings, machine: str, *, name: str, progress: Callable[[str], None]
 ) -> None:
     progress("decode")
     text = source.read_text()
+    if text == "bad":
+        raise BadPicture(f"{name or source.name} is no picture: drop another")
     if text in WAYS:
         WAYS[text]()
     progress("write")
@@ -50,10 +52,6 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     ink = json.loads((folder / "ink.json").read_text())
     report = json.loads((folder / "report.json").read_text()) | {"ink_strokes": len(ink["strokes"])}
     (folder / "report.json").write_text(json.dumps(report))
-
-
-def _bad() -> None:
-    raise BadPicture("source.png is no picture: drop another")
 
 
 def _crash() -> None:
@@ -81,7 +79,6 @@ def _mistake() -> None:
 
 
 WAYS: dict[str, Callable[[], None]] = {
-    "bad": _bad,
     "crash": _crash,
     "hang": _hang,
     "eat": _eat,

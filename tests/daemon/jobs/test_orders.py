@@ -6,7 +6,7 @@ from threading import Thread
 
 import pytest
 
-from daemon.errors import LinedrawError
+from daemon.errors import LinedrawError, MachineFault, NoMachine
 from firmware_protocol.session import Ended, Verdict
 from tests.daemon.jobs.bench import Bench, fault
 
@@ -113,17 +113,50 @@ def test_a_job_that_is_over_cannot_be_cancelled(bench: Bench) -> None:
         bench.runner.cancel("1")
 
 
-def test_a_job_found_in_drawing_is_interrupted_and_nothing_starts_by_itself(bench: Bench) -> None:
+def test_a_job_found_in_drawing_is_interrupted_its_pen_is_lifted_and_nothing_else_starts(bench: Bench) -> None:
     bench.planned("a.png")
     bench.planned("b.png")
     bench.desk.begin_drawing()
     after = bench.restarted()
-    after.drawing.turn()
+    for _ in range(3):
+        after.drawing.turn()
     assert after.states() == ["interrupted", "planned"]
-    assert after.machine.opened == 0
+    assert (after.machine.lifted, after.machine.still, after.machine.drawn) == (1, True, 0)
+    assert (after.machine.opened, after.machine.closed) == (1, 1)
+    assert "the last drawing was cut off: the pen has been lifted, and nothing else moves" in after.sayings()
+    assert after.desk.held
     after.runner.go()
     after.drawing.turn()
     assert after.states() == ["interrupted", "done"]
+    assert (after.machine.lifted, after.machine.still) == (1, False)
+    after.journal.close()
+
+
+def test_a_pen_that_was_left_down_is_lifted_as_soon_as_the_machine_is_found(bench: Bench) -> None:
+    bench.planned()
+    bench.desk.begin_drawing()
+    after = bench.restarted()
+    after.machine.missing = NoMachine("no adapter: plug it in")
+    after.drawing.turn()
+    after.machine.missing = None
+    after.now_s += 3.0
+    after.drawing.turn()
+    assert after.machine.lifted == 1
+    after.journal.close()
+
+
+def test_a_pen_that_cannot_be_lifted_is_said_once(bench: Bench) -> None:
+    bench.planned()
+    bench.desk.begin_drawing()
+    after = bench.restarted()
+    after.machine.missing = MachineFault("the controller is locked: unlock it")
+    for _ in range(2):
+        after.now_s += 100.0
+        after.drawing.turn()
+    assert (
+        after.sayings().count("the pen may still be down, it could not be lifted: the controller is locked: unlock it")
+        == 1
+    )
     after.journal.close()
 
 

@@ -40,7 +40,7 @@ def test_a_bad_picture_never_stops_the_next_one(bench: Bench) -> None:
     bench.planning.turn()
     bench.drawing.turn()
     assert bench.states() == ["failed", "done"]
-    assert bench.shown["last_error"] == "source.png is no picture: drop another"
+    assert bench.shown["last_error"] == "bad.png is no picture: drop another"
     assert bench.machine.drawn == 1
 
 

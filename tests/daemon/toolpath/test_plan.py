@@ -92,13 +92,21 @@ def test_an_empty_picture_or_box_is_refused(width_px: int, box_mm: tuple[float, 
 )
 def test_every_stroke_arrives_inside_the_box_with_its_length(strokes: list[list[tuple[float, float]]]) -> None:
     given_drawing = drawing(*strokes)
-    toolpath = plan_toolpath(given_drawing, precision=Precision(error_mm=0.0))
+    toolpath = plan_toolpath(given_drawing, precision=Precision(error_mm=0.0), rejoin=False)
     points = np.concatenate([stroke.points for stroke in toolpath.strokes])
     assert len(toolpath.strokes) == len(strokes)
     assert points.min() >= 25 - 1e-9
     assert points.max() <= 89 + 1e-9
     given_px = sum(stroke.length for stroke in given_drawing.strokes)
     assert toolpath.drawn_mm == pytest.approx(given_px * 64 / 101, abs=1e-6)
+
+
+def test_lines_that_cross_are_joined_for_less_travel_unless_they_are_to_stay() -> None:
+    crossing = drawing([(0, 50), (10, 50), (90, 55)], [(10, 40), (10, 50), (90, 60)])
+    joined, kept = (plan_toolpath(crossing, rejoin=rejoin) for rejoin in (True, False))
+    assert len(joined.strokes) == len(kept.strokes) == 2
+    assert joined.travelled_mm < kept.travelled_mm - 1
+    assert joined.drawn_mm == pytest.approx(kept.drawn_mm)
 
 
 def test_the_first_stroke_and_point_out_of_reach_is_named() -> None:
