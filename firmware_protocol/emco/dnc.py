@@ -54,7 +54,7 @@ def encode(package: Package) -> bytes:
 
 def decode(data: bytes) -> Package:
     """The package that these bytes are, whole. Raises RemoteProtocolError where they are none."""
-    length = _length(data)
+    length = _length(data) if data else 0
     if len(data) != HEADER_BYTES + length:
         raise RemoteProtocolError(f"a DNC package of {len(data)} bytes says that it has {HEADER_BYTES + length}")
     if data[0] != checksum(data[1:]):
@@ -88,6 +88,9 @@ class Packages:
 
 
 def _length(data: bytes) -> int:
+    """Of the text, by the header. Raises RemoteProtocolError for what is no header."""
+    if not 48 <= data[0] < 48 + 64 or not _PLAIN.fullmatch(data[1:HEADER_BYTES].decode("latin-1")):
+        raise RemoteProtocolError(f"{data[:HEADER_BYTES]!r} is no header of a DNC package")
     digits = data[6:8]
     if len(digits) < 2 or not digits.isdigit() or int(digits) > LONGEST_BYTES:
         raise RemoteProtocolError(f"a DNC package says a length of {digits!r}: 00 to 09 are possible")

@@ -66,7 +66,8 @@ class Reading:
     def stall(self, now: float) -> None:
         """Hold the host for ever."""
         self._stalled = self.receiver.quiet = True
-        self._say(XOFF, now)
+        if not self.receiver.held:
+            self._say(XOFF, now)
 
     def _start(self, now: float) -> None:
         self._start_at = _NEVER
