@@ -14,9 +14,9 @@ LONGEST_LINE = 79
 """From 80 characters on GRBL answers error:11."""
 
 SEGMENT_LINES = 6
-"""Lines whose steps may still wait behind the planner (its segment buffer), one of them answered by a reset."""
+"""Moves whose steps may still wait behind the planner (its segment buffer), one of them answered by a reset."""
 
-_ALONE = re.compile(r"\$|G0*10(?!\d)|G(?:28|30)\.1")
+_ALONE = re.compile(r"(?:N\d+)?(?:\$|G0*10(?!\d)|G(?:28|30)\.1)")
 """A `$` command wants the controller idle, and storing a value makes it deaf for some ms: nothing is sent behind it."""
 _BARRIERS = re.compile(r"G0*4(?![\d.])|M0*[02](?!\d)|M30(?!\d)")
 _DWELL = re.compile(r"G0*4P(\d+(?:\.\d*)?)")
@@ -31,16 +31,19 @@ class Flow:
     """
 
     def __init__(self, texts: Sequence[str], *, room_bytes: int | None) -> None:
-        self._lines = [text.encode("ascii") + b"\n" for text in texts]
+        self._lines: list[bytes] = []
         self._room_bytes = room_bytes
-        plain = [text.replace(" ", "").upper() for text in texts]
-        self._alone = {index for index, text in enumerate(plain) if _ALONE.match(text)}
-        self._barriers = {index for index, text in enumerate(plain) if _BARRIERS.search(text)}
-        self._owed_bytes = 0
+        self._alone: set[int] = set()
+        self._barriers: set[int] = set()
+        self.owed_bytes = 0
+        """Bytes sent of lines that are not answered."""
+        self.synced = 0
+        """Up to this line answers and lines are known to belong together: nothing was owed behind it."""
         self.sent = 0
         self.answered = 0
         self.drawn = 0
         """All lines before this one have been executed, not only planned: a barrier behind them has been passed."""
+        self.replace_from(0, texts)
 
     @property
     def done(self) -> bool:
@@ -71,7 +74,7 @@ class Flow:
         """The next lines that fit, to be written now."""
         first = self.sent
         while self.sent < len(self._lines) and self._fits(self.sent):
-            self._owed_bytes += len(self._lines[self.sent])
+            self.owed_bytes += len(self._lines[self.sent])
             self.sent += 1
         return b"".join(self._lines[first : self.sent])
 
@@ -80,23 +83,39 @@ class Flow:
         if not self.owed:
             return None
         line = self.answered
-        self._owed_bytes -= len(self._lines[line])
+        self.owed_bytes -= len(self._lines[line])
         self.answered += 1
         # A reset in a dwell answers the dwell without executing it; an answer to the line behind is proof.
         if line - 1 in self._barriers:
             self.drawn = line
+        if not self.owed:
+            self.synced = self.answered
         return line
 
-    def certainly_drawn(self, *, planner_blocks: int) -> int:
-        """All lines before this one have been executed: proven by a barrier, or pushed out of the planner."""
-        return max(self.drawn, self.answered - planner_blocks - SEGMENT_LINES, 0)
+    @property
+    def first_bytes(self) -> int:
+        """Length of the oldest unanswered line, its end included; 0 when nothing is owed."""
+        return len(self._lines[self.answered]) if self.owed else 0
+
+    def replace_from(self, line: int, texts: Sequence[str]) -> None:
+        """From `line` on, which has not been sent, other lines follow."""
+        del self._lines[line:]
+        self._alone = {index for index in self._alone if index < line}
+        self._barriers = {index for index in self._barriers if index < line}
+        for index, text in enumerate(texts, line):
+            plain = text.replace(" ", "").upper()
+            self._lines.append(text.encode("ascii") + b"\n")
+            if _ALONE.match(plain):
+                self._alone.add(index)
+            if _BARRIERS.search(plain):
+                self._barriers.add(index)
 
     def _fits(self, line: int) -> bool:
         if not self.owed:
             return True
         if self._room_bytes is None or line in self._alone or line - 1 in self._alone:
             return False
-        return self._owed_bytes + len(self._lines[line]) <= self._room_bytes
+        return self.owed_bytes + len(self._lines[line]) <= self._room_bytes
 
 
 def check(texts: Sequence[str], *, buffer_bytes: int) -> None:

@@ -41,7 +41,8 @@ class StatusReport:
     """The answer to `?`. Positions in the controller's report units: mm, or inch where setting 13 is 1.
 
     state: the word before the colon (Idle, Run, Hold, ...); detail: the digit behind it (Hold:0 stands, Hold:1 slows
-    down). Of machine and work position a report carries one; offset = machine - work, now and then.
+    down). Of machine and work position a report carries one; offset = machine - work, now and then. line_number: the N
+    of the line that is executed, where the build has it. feed_percent: the feed override, now and then.
     """
 
     state: str
@@ -52,6 +53,7 @@ class StatusReport:
     free_blocks: int | None = None
     free_bytes: int | None = None
     line_number: int | None = None
+    feed_percent: int | None = None
 
     @property
     def word(self) -> str:
@@ -147,6 +149,7 @@ _FORMS = (
 _TRIPLE = re.compile(rf"({_NUMBER}),({_NUMBER}),({_NUMBER})(?:,{_NUMBER})*")
 _PAIR = re.compile(r"(\d{1,6}),(\d{1,6})")
 _LINE_NUMBER = re.compile(r"(\d{1,8})")
+_OVERRIDES = re.compile(r"(\d{1,3}),\d{1,3},\d{1,3}")
 _OPTIONS = re.compile(r"([^,]*),(\d{1,6}),(\d{1,6})(?:,.*)?")
 
 
@@ -181,6 +184,8 @@ def _field(field: str) -> Iterator[tuple[str, Triple | int]]:
         yield "free_bytes", int(free)
     elif name == "Ln":
         yield "line_number", int(_numbers(_LINE_NUMBER, values)[0])
+    elif name == "Ov":
+        yield "feed_percent", int(_numbers(_OVERRIDES, values)[0])
 
 
 _POSITIONS = {"MPos": "machine", "WPos": "work", "WCO": "offset"}

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from firmware_protocol.grbl import codes
+from firmware_protocol.grbl.replies import Triple
 from firmware_protocol.grbl.states import State
+from firmware_protocol.session import Finding
 
 LOCKED = (
     "the controller is locked by an alarm: look what blocks the machine, then home it, "
@@ -16,6 +20,19 @@ RESTARTED = (
 ALARMED = f"the controller reports an alarm and locked itself: {codes.ALARMS[1].remedy}"
 STOPPED = "stopped on request, the position is kept: put in a new sheet before the next drawing"
 STOPPED_HOMING = "stopped on request while homing, so the position is unknown: home the machine before the next drawing"
+CUT_UNKNOWN = (
+    "stopped, as the place where the line was cut is not known and it cannot go on: put in a new sheet before the next "
+    "drawing"
+)
+MOTORS_OFF = (
+    "the motors have been switched off, so the position is unknown: home the machine, "
+    "or set the pen to its origin and say so"
+)
+WAITING = {
+    "Hold": "somebody pressed feed hold: press cycle start at the controller or let the drawing go on, or stop it",
+    "Door": "the safety door is open: close it, then press cycle start or let the drawing go on, or stop it",
+    "Sleep": "the controller sleeps and has switched its motors off: stop the drawing and home the machine",
+}
 FINISHED = "every line was drawn"
 UNPLUGGED = "the port is gone: plug the machine in again, set the pen to its origin and put in a new sheet"
 
@@ -43,6 +60,25 @@ def refused_by_homing(code: int) -> str:
 
 def alarmed(code: int) -> str:
     return f"ALARM:{code}, {codes.alarm(code)}"
+
+
+def obstacles(findings: Sequence[Finding]) -> str:
+    """What keeps a job from being begun."""
+    return "; ".join(finding.why for finding in findings)
+
+
+def program_stop(number: int, text: str) -> str:
+    """number: from 1."""
+    return f"the program waits in line {number} ({text!r}): do what it is there for, then let the drawing go on"
+
+
+def astray(place_mm: Triple, number: int, text: str) -> str:
+    """number: from 1, of the next line to be answered."""
+    x, y, z = place_mm
+    return (
+        f"the pen was seen at ({x:g}, {y:g}, {z:g}) mm, which is not on its path near line {number} ({text!r}), so a "
+        "byte was changed on the way: check the cable, then draw on a new sheet"
+    )
 
 
 def silent(seconds: float) -> str:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 from firmware_protocol.errors import RemoteProtocolError
 from firmware_protocol.grbl import flow as flows
 from firmware_protocol.grbl import replies, sentences
 from firmware_protocol.grbl.controller import Controller
-from firmware_protocol.grbl.conversation import RESET, USUAL_POLL_S, Conversation, Habits
-from firmware_protocol.grbl.states import POLLED, SENDING, Signal, State
+from firmware_protocol.grbl.conversation import Conversation
+from firmware_protocol.grbl.findings import findings, needs_of
+from firmware_protocol.grbl.habits import RESET, USUAL_POLL_S, Habits, Patience
+from firmware_protocol.grbl.job import Job
+from firmware_protocol.grbl.states import POLLED, RUNNING, SENDING, TRANSITIONS, Signal, State
 from firmware_protocol.grbl.watch import Watch
 from firmware_protocol.lines import LineReader
-from firmware_protocol.session import Event, JobLine
+from firmware_protocol.session import Event, Finding, JobLine
 
 ASK = b"?"
 
@@ -23,13 +26,32 @@ PATIENCE_S = 1.5
 """Then `?` is asked, and a controller that has not answered after this long is reset."""
 
 
+USUAL_PATIENCE = Patience()
+
+_BRIEF = (
+    State.RESETTING,
+    State.RESTARTED,
+    State.EMPTYING,
+    State.ASKING,
+    State.PLACING,
+    State.SETTING,
+    State.LEAVING,
+    State.SWITCHING,
+    State.RELEASING,
+)
+"""States that last well below a second."""
+
+
 class GrblSession:
     """`firmware_protocol.session.Session` for GRBL 1.1.
 
     now: the time at which the port was opened. flow: "count" fills the controller's buffer by counting characters,
     "line" waits for each answer (for clones that lose bytes). lift: G-code lines that raise the pen from wherever it
     is, in a controller that has just been reset; they also end every job, so that `pen_lifted` is known. home: run
-    `$H` at start-up, which also opens the homing lock; `$X` is never sent.
+    `$H` at start-up, which also opens the homing lock; `$X` is never sent. may_set: settings that a job wants otherwise
+    are written, only where the value differs, one at a time, and read back. dry_run: every job is first run in check
+    mode, without motion. Once `patience` has the motors switched off, the place of the pen is unknown and no job is
+    taken until `home` or `set_origin`.
     After NotReady, and after every verdict but FINISHED, STOPPED and REJECTED with a known position, the session is
     over: open the port again. Methods: Grbl 1.1 interface document (character counting, real-time commands).
     """
@@ -42,18 +64,19 @@ class GrblSession:
         lift: Sequence[str] = (),
         lift_after_restart: bool = True,
         home: bool = False,
-        silent_after_s: float = 5.0,
-        banner_within_s: float = 6.0,
-        home_within_s: float = 300.0,
+        may_set: bool = False,
+        dry_run: bool = False,
+        patience: Patience = USUAL_PATIENCE,
     ) -> None:
         """Raises LocalProtocolError when a lift line is one that no controller takes."""
         flows.check(lift, buffer_bytes=Controller().buffer_bytes)
-        habits = Habits(flow == "count", tuple(lift), lift_after_restart, home)
-        self._silent_after_s = silent_after_s
-        self._limits_s = dict.fromkeys((State.RESETTING, State.RESTARTED, State.EMPTYING, State.ASKING), silent_after_s)
-        self._limits_s |= dict.fromkeys((State.WAITING, State.GREETED), banner_within_s) | {State.HOMING: home_within_s}
+        habits = Habits(flow == "count", tuple(lift), lift_after_restart, home, may_set, dry_run)
+        self._patience, silent_s = patience, patience.silent_after_s
+        self._limits_s = dict.fromkeys(_BRIEF, silent_s) | {State.HOMING: patience.home_within_s}
+        self._limits_s |= dict.fromkeys((State.WAITING, State.GREETED), patience.banner_within_s)
+        self._homing_since: float | None = None
         self._knocks = [(now + BOOT_S, ASK), (now + BOOT_S + PATIENCE_S, RESET)]
-        self._watch = Watch(now=now, silent_after_s=silent_after_s)
+        self._watch = Watch(now=now, silent_after_s=silent_s)
         self._lines = LineReader()
         self._talk = Conversation(habits, self._watch, now=now)
 
@@ -84,15 +107,11 @@ class GrblSession:
 
     def expire(self, now: float) -> list[Event]:
         """See `Session.expire`."""
-        talk, limit_s = self._talk, self._limits_s.get(self._talk.state)
-        talk.now = now
-        if limit_s is not None and now >= talk.since + limit_s:
-            talk.too_late(limit_s)
-        elif self._asking and self._watch.silent(now):
-            talk.go(Signal.SILENCE, sentences.silent(self._silent_after_s))
-        elif self._asking and self._watch.doubtful and self._watch.stuck(now, dwell_s=talk.flow.dwell_s):
-            line = talk.flow.answered
-            talk.go(Signal.STUCK, sentences.stuck(self._silent_after_s, line + 1, talk.flow.text(line)))
+        self._talk.now = now
+        for at, what in self._limits():
+            if now >= at:
+                what()
+                break
         return self._told()
 
     def deadline(self) -> float | None:
@@ -101,10 +120,9 @@ class GrblSession:
         if talk.events or talk.urgent:
             return talk.now
         times = [at for at, _ in self._knocks[:1] if talk.state is State.WAITING]
-        if talk.state in self._limits_s:
-            times.append(talk.since + self._limits_s[talk.state])
+        times += [at for at, _ in self._limits()]
         if self._asking:
-            times.append(self._watch.deadline())
+            times.append(self._watch.ask_at)
         return min(times, default=None)
 
     def data_to_send(self, now: float) -> bytes:
@@ -118,6 +136,12 @@ class GrblSession:
             data += self._watch.ask(now)
         if talk.state in SENDING:
             data += talk.flow.take()
+        if talk.state in RUNNING:
+            data += talk.feed.step(now)
+        if not talk.flow.homing:
+            self._homing_since = None
+        elif self._homing_since is None:
+            self._homing_since = now
         return data
 
     def start(self, job: Sequence[JobLine], now: float) -> None:
@@ -134,10 +158,47 @@ class GrblSession:
         A feed hold has no effect while the machine homes: there the controller is reset and forgets its position.
         """
         self._talk.now = now
-        if self._talk.flow.homing:
-            self._talk.go(Signal.ABORT, sentences.STOPPED_HOMING)
-        else:
-            self._talk.go(Signal.STOP, sentences.STOPPED)
+        self._talk.stop()
+
+    def pause(self, now: float, *, at_once: bool = False) -> None:
+        """See `PausableSession.pause`; without a job that moves, and while it homes, it changes nothing.
+
+        Behind the stroke: of the last line that was sent. At once: feed hold, reset, lift; going on begins a little
+        before the cut. Raises LocalProtocolError when a pause at once is wanted without lines that raise the pen.
+        """
+        self._talk.now = now
+        self._talk.pause(at_once=at_once)
+
+    def resume(self, now: float) -> None:
+        """See `PausableSession.resume`."""
+        self._talk.now = now
+        self._talk.resume()
+
+    def set_feed_percent(self, percent: int, now: float) -> None:
+        """Override all feeds of this and later jobs, 10 to 200 %; takes up to some seconds. Raises ValueError."""
+        self._talk.now = now
+        self._talk.feed.want(percent)
+
+    def home(self, now: float) -> None:
+        """Find the home with `$H` between two jobs; `Ready` is said at its end. Raises LocalProtocolError."""
+        self._talk.now = now
+        self._talk.home()
+
+    def set_origin(self, now: float) -> None:
+        """The pen stands over X0 Y0: store that (G54), then say `Ready`. Raises LocalProtocolError within a job."""
+        self._talk.now = now
+        self._talk.place()
+
+    def findings(self, job: Sequence[JobLine] = ()) -> list[Finding]:
+        """What the machine has otherwise than `job` wants it; complete once Ready has been said. Changes nothing.
+
+        Raises LocalProtocolError for a line that the controller cannot take.
+        """
+        talk = self._talk
+        controller = talk.controller
+        path = Job(job, lift=talk.habits.lift, controller=controller, counting=talk.habits.counting).leg.path
+        needs = needs_of(path, offset_mm=controller.offset_mm, firmware=self.firmware or "", letters=controller.letters)
+        return findings(controller.settings, needs)
 
     def unplugged(self, now: float) -> list[Event]:
         """See `Session.unplugged`."""
@@ -148,6 +209,25 @@ class GrblSession:
     @property
     def _asking(self) -> bool:
         return self._talk.state in POLLED and not self._talk.flow.homing
+
+    def _limits(self) -> Iterator[tuple[float, Callable[[], None]]]:
+        """When something has lasted too long, and what follows."""
+        talk, watch, patience = self._talk, self._watch, self._patience
+        if (limit_s := self._limits_s.get(talk.state)) is not None:
+            yield talk.since + limit_s, lambda: talk.too_late(limit_s)
+        if self._homing_since is not None and talk.state is not State.HOMING:
+            yield self._homing_since + patience.home_within_s, lambda: talk.too_late(patience.home_within_s)
+        if talk.state is State.READY and patience.motors_off_after_min is not None:
+            yield talk.since + 60 * patience.motors_off_after_min, talk.rest
+        if self._asking and (silent_at := watch.silent_at) is not None:
+            yield silent_at, lambda: talk.go(Signal.SILENCE, sentences.silent(patience.silent_after_s))
+        if (talk.state, Signal.STUCK) in TRANSITIONS and not talk.flow.homing:
+            stuck_at = watch.stuck_at(dwell_s=talk.flow.dwell_s)
+            yield from [] if stuck_at is None else [(stuck_at, self._stuck)]
+
+    def _stuck(self) -> None:
+        number, text = self._talk.named(self._talk.flow.answered)
+        self._talk.go(Signal.STUCK, sentences.stuck(self._patience.silent_after_s, number, text))
 
     def _knock(self, now: float) -> bytes:
         """`?`, then a reset; a controller that answered but moves is asked again until it stands."""

@@ -40,21 +40,16 @@ class Watch:
         """A line was answered, so answers are not lost."""
         self._idle_since = None
 
-    def silent(self, now: float) -> bool:
-        """`?` has gone unanswered for too long."""
-        return self._asked_at is not None and now >= self._asked_at + self._silent_after_s
+    @property
+    def silent_at(self) -> float | None:
+        """When `?` will have gone unanswered for too long; None when none is unanswered."""
+        return None if self._asked_at is None else self._asked_at + self._silent_after_s
+
+    def stuck_at(self, *, dwell_s: float) -> float | None:
+        """When the controller will have been idle for too long without answering its lines: something was lost."""
+        return None if self._idle_since is None else self._idle_since + self._silent_after_s + dwell_s
 
     @property
-    def doubtful(self) -> bool:
-        """`stuck` may become true."""
-        return self._idle_since is not None
-
-    def stuck(self, now: float, *, dwell_s: float) -> bool:
-        """The controller has been idle for too long without answering its lines: an answer or a line was lost."""
-        return self._idle_since is not None and now >= self._idle_since + self._silent_after_s + dwell_s
-
-    def deadline(self) -> float:
-        """When `ask`, `silent` or `stuck` wants to be called again."""
-        if self._asked_at is None:
-            return self._next_at
-        return min(self._next_at, self._asked_at + self._silent_after_s)
+    def ask_at(self) -> float:
+        """When `ask` wants to be called again."""
+        return self._next_at

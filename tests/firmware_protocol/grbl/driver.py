@@ -6,17 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from firmware_protocol.grbl.habits import Patience
 from firmware_protocol.grbl.session import GrblSession
 from firmware_protocol.session import Ended, Event, Status
 
 BANNER = "Grbl 1.1h ['$' for help]"
 UNLOCK = "[MSG:'$H'|'$X' to unlock]"
 IDLE = "<Idle|MPos:0.000,0.000,0.000|FS:0,0>"
+DONE = "<Idle|MPos:4.000,0.000,5.000|FS:0,0>"
+"""Where `two_strokes` and the lift end."""
 RUN = "<Run|MPos:1.000,0.000,0.000|FS:500,0>"
 HELD = "<Hold:0|MPos:8.800,0.000,0.000|FS:0,0>"
 ALARM = "<Alarm|MPos:0.000,0.000,0.000|FS:0,0>"
 INFO = ("[VER:1.1h.20190825:]", "[OPT:V,15,128]", "ok")
-SETTINGS = ("$1=25", "$13=0", "$110=500.000", "ok")
+SETTINGS = ("$1=255", "$13=0", "$110=500.000", "ok")
 LIFT = ("G90 G21", "G0 Z5")
 BARRIER = b"G4 P0.01\n"
 
@@ -34,7 +37,8 @@ class Play:
 
     def __init__(self, **options: Any) -> None:
         self.now = 100.0
-        self.session = GrblSession(now=self.now, **options)
+        waits = {name: options.pop(name) for name in list(options) if name in Patience.__dataclass_fields__}
+        self.session = GrblSession(now=self.now, patience=Patience(**{"silent_after_s": 5.0} | waits), **options)
         self.sent = b""
         self.events: list[Event] = []
 

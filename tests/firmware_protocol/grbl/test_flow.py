@@ -62,20 +62,12 @@ def test_no_more_than_the_room_is_ever_unanswered(lengths: list[int], room_bytes
     assert sent == b"".join(text.encode() + b"\n" for text in texts)
 
 
-def test_only_what_has_left_planner_and_segment_buffer_is_certainly_drawn() -> None:
-    lines = Flow(["X1"] * 40, room_bytes=128)
-    for _ in range(30):
-        lines.take()
-        lines.answer()
-    assert lines.certainly_drawn(planner_blocks=15) == 30 - 15 - flow.SEGMENT_LINES
-
-
 def test_a_dwell_is_proof_once_the_line_behind_it_is_answered() -> None:
     lines = Flow(["X1", "X2", "G4P0.1", "X3"], room_bytes=128)
     lines.take()
     drawn = []
     while lines.answer() is not None:
-        drawn.append(lines.certainly_drawn(planner_blocks=15))
+        drawn.append(lines.drawn)
     assert drawn == [0, 0, 0, 3]
 
 
@@ -85,7 +77,7 @@ def test_other_words_are_no_barrier(text: str) -> None:
     lines.take()
     lines.answer()
     lines.answer()
-    assert lines.certainly_drawn(planner_blocks=15) == 0
+    assert lines.drawn == 0
 
 
 def test_dwells_of_unanswered_lines_add_up() -> None:

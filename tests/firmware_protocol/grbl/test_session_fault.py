@@ -124,7 +124,14 @@ def test_unplugging_ends_the_job() -> None:
 
 
 def test_what_was_sent_may_be_drawn_and_what_left_the_planner_is_drawn() -> None:
+    play = drawing(*[Line(f"X{stroke:02}", stroke) for stroke in range(100)])
+    play.say(*["ok"] * 30)
+    play.say("ALARM:1")
+    assert (play.ended.strokes_certain, play.ended.strokes_possible) == (30 - 21, 30 + 128 // 4)
+
+
+def test_lines_that_take_no_room_in_the_planner_push_nothing_out_of_it() -> None:
     play = drawing(*[Line("X1", stroke) for stroke in range(100)])
     play.say(*["ok"] * 30)
     play.say("ALARM:1")
-    assert (play.ended.strokes_certain, play.ended.strokes_possible) == (30 - 21, 30 + 128 // 3)
+    assert play.ended.strokes_certain == 0

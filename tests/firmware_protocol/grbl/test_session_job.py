@@ -6,7 +6,7 @@ import pytest
 
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.session import Accepted, Status, Verdict
-from tests.firmware_protocol.grbl.driver import BARRIER, IDLE, RUN, Line, drawing, ready
+from tests.firmware_protocol.grbl.driver import BARRIER, DONE, IDLE, RUN, Line, drawing, ready
 
 
 def test_the_job_is_followed_by_the_lift_and_a_barrier() -> None:
@@ -22,12 +22,12 @@ def test_every_answer_accepts_one_line_of_the_job_in_order() -> None:
 
 def test_finished_needs_all_answers_the_barrier_and_idle() -> None:
     play = drawing()
-    play.say(*["ok"] * 6, IDLE)
+    play.say(*["ok"] * 6, DONE)
     assert len(play.told) == 4
     assert play.say("ok") == b"?"
-    play.say(RUN)
+    play.say(DONE.replace("Idle", "Run"))
     assert len(play.told) == 4
-    play.say(IDLE)
+    play.say(DONE)
     end = play.ended
     assert (end.verdict, end.strokes_certain, end.strokes_possible) == (Verdict.FINISHED, 2, 2)
     assert (end.position_known, end.pen_lifted) == (True, True)
@@ -44,14 +44,14 @@ def test_idle_during_a_dwell_is_not_the_end() -> None:
 def test_without_lift_lines_nothing_is_said_about_the_pen() -> None:
     play = drawing(Line("X1", 0), lift=())
     play.say("ok", "ok")
-    play.say(IDLE)
+    play.say("<Idle|MPos:1.000,0.000,0.000|FS:0,0>")
     assert play.ended.pen_lifted is False
 
 
 def test_the_next_job_starts_on_the_same_session() -> None:
     play = drawing()
     play.say(*["ok"] * 7)
-    play.say(IDLE)
+    play.say(DONE)
     assert play.start(Line("X9", 0)).startswith(b"?X9\n")
 
 

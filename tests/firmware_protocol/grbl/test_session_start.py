@@ -21,7 +21,7 @@ def test_asks_state_version_and_settings_one_after_the_other() -> None:
     assert play.wait(1.9) == b""
     assert [play.say(*lines) for lines in (("", BANNER), (IDLE,), INFO, SETTINGS)] == [b"?", b"?$I\n", b"$$\n", b"?"]
     assert play.told == [Ready("Grbl 1.1h.20190825", 128)]
-    assert play.session.settings == {1: 25.0, 13: 0.0, 110: 500.0}
+    assert play.session.settings == {1: 255.0, 13: 0.0, 110: 500.0}
 
 
 def test_the_buffer_is_as_large_as_the_controller_says() -> None:
