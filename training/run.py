@@ -124,6 +124,7 @@ class Run:
         self.optimiser.step()
         self.average.update(self.net)
         self.progress.images += len(batch.ink)
+        self.progress.batches += 1
         return float(loss.detach())
 
     def settle(self, canvases: Source) -> nn.Module:

@@ -20,7 +20,8 @@ import torch
 from tqdm import tqdm
 
 from training import quickdraw
-from training.canvas import Batch, Canvases, Source
+from training.canvas import Canvases, Source
+from training.feed import feed
 from training.network import Shape
 from training.plot import draw_run
 from training.render import Sample, reference
@@ -35,15 +36,22 @@ _KINDS: dict[str, type] = {"start": str, "seconds": float, "images": int}
 
 
 def train(
-    run: Run, canvases: Source, sets: dict[str, list[Sample]], *, save_every_s: float, stop: Callable[[], bool]
+    run: Run,
+    canvases: Source,
+    sets: dict[str, list[Sample]],
+    *,
+    save_every_s: float,
+    stop: Callable[[], bool],
+    workers: int = 0,
 ) -> None:
     """Until the budget is spent or `stop()` says so; validates and saves every save_every_s seconds and at the end."""
     config, saved = run.config, time.monotonic()
     bar = tqdm(total=config.images, initial=run.progress.images, unit="image", smoothing=0.02, mininterval=1.0)
     loss, shown = 0.0, {}
+    batches = feed(config, canvases, begin=run.progress.batches, workers=workers)
     while run.progress.share(config) < 1.0 and not stop():
         began = time.monotonic()
-        batch = next_batch(run, canvases)
+        batch = next(batches)
         loss += 0.02 * (run.step(batch) - loss)
         run.progress.seconds += time.monotonic() - began
         bar.update(len(batch.ink))
@@ -53,15 +61,6 @@ def train(
             saved = time.monotonic()
     bar.close()
     _validated(run, canvases, sets)
-
-
-def next_batch(run: Run, canvases: Source) -> Batch:
-    """Every wide_every-th batch is one of larger canvases, so that the network knows pages of more than one size."""
-    config, first = run.config, run.progress.images
-    run.progress.batches += 1
-    if config.wide_every and run.progress.batches % config.wide_every == 0:
-        return canvases.batch(first, max(1, config.batch // 2), curved=config.curved, canvas_px=config.wide_px)
-    return canvases.batch(first, config.batch, curved=config.curved)
 
 
 def _validated(run: Run, canvases: Source, sets: dict[str, list[Sample]]) -> dict[str, str]:
@@ -86,8 +85,8 @@ def validation_sets(config: Config) -> dict[str, list[Sample]]:
     return sets
 
 
-def parse(arguments: Sequence[str] | None = None) -> tuple[Config, Path, bool, float]:
-    """Command line to configuration, folder, whether to go on, and the seconds between checkpoints."""
+def parse(arguments: Sequence[str] | None = None) -> tuple[Config, argparse.Namespace]:
+    """Command line to what the run depends on, and the rest: where, and how it is carried out."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", required=True, help="simplified Quick, Draw! ndjson: a file or a folder")
     parser.add_argument("--raw", help="raw Quick, Draw! ndjson: a file or a folder; without it only the paper's family")
@@ -97,33 +96,41 @@ def parse(arguments: Sequence[str] | None = None) -> tuple[Config, Path, bool, f
     parser.add_argument("--out", required=True, type=Path, help="folder of the run")
     parser.add_argument("--resume", action="store_true", help="go on from the folder's checkpoint")
     parser.add_argument("--save-every-s", type=float, default=240.0)
+    parser.add_argument("--stop-after-s", type=float, help="stop then, wherever the budget stands; --resume goes on")
+    parser.add_argument("--workers", type=int, default=0, help="processes that draw canvases ahead, for a GPU")
     parser.add_argument("--no-bf16", action="store_true")
     for option in fields(Config):
         if option.name not in ("data", "raw", "shape", "bf16"):
             kind = _KINDS.get(option.name) or type(option.default)
             parser.add_argument(f"--{option.name.replace('_', '-')}", type=kind, default=option.default)
-    given = vars(parser.parse_args(arguments))
-    tuples = {key: tuple(int(v) for v in given.pop(key).split(",")) for key in ("net", "channels")}
-    shape = Shape(*tuples["net"], tuples["channels"], not given.pop("no_batch_norm"))
-    folder, resume, save_every_s = given.pop("out"), given.pop("resume"), given.pop("save_every_s")
-    bf16 = not given.pop("no_bf16")
-    return Config(shape=shape, bf16=bf16, **given), folder, resume, save_every_s
+    given = parser.parse_args(arguments)
+    k1, k2, d, r = (int(value) for value in given.net.split(","))
+    shape = Shape(k1, k2, d, r, tuple(int(value) for value in given.channels.split(",")), not given.no_batch_norm)
+    options = {o.name: getattr(given, o.name) for o in fields(Config) if o.name not in ("shape", "bf16")}
+    return Config(shape=shape, bf16=not given.no_bf16, **options), given
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    config, folder, resume, save_every_s = parse(arguments)
+    began_s = time.monotonic()
+    config, given = parse(arguments)
     if config.threads:
         torch.set_num_threads(config.threads)
     stopped: list[int] = []
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda n, _frame: stopped.append(n))
-    run = Run(config, folder)
-    if resume:
+    run = Run(config, given.out)
+    if given.resume:
         run.load()
     simplified = quickdraw.read([Path(config.data)], skip=HELD_OUT)
     raw = quickdraw.read([Path(config.raw)], skip=HELD_OUT) if config.raw else None
     canvases = Canvases(simplified, raw, seed=config.seed)
-    train(run, canvases, validation_sets(config), save_every_s=save_every_s, stop=lambda: bool(stopped))
+
+    def stop() -> bool:
+        late = given.stop_after_s is not None and time.monotonic() - began_s > given.stop_after_s
+        return late or bool(stopped)
+
+    sets = validation_sets(config)
+    train(run, canvases, sets, save_every_s=given.save_every_s, stop=stop, workers=given.workers)
     return 0
 
 

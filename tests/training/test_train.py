@@ -1,5 +1,6 @@
 """A tiny network learns, goes on where it was stopped, and becomes a file that answers the same."""
 
+import itertools
 import json
 import os
 from pathlib import Path
@@ -11,9 +12,11 @@ import torch
 os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 import onnxruntime
 
-from training import export, train
-from training.canvas import stack
+from training import export, quickdraw, train
+from training.canvas import Canvases, stack
+from training.feed import feed, place_of
 from training.network import MirrorUNet, Shape
+from training.run import Config
 
 pytestmark = [pytest.mark.training, pytest.mark.filterwarnings("ignore")]
 
@@ -66,6 +69,28 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_been(data: Path, tmp_path: Path)
     run(data, tmp_path / "parts", "--images", "16", "--resume", *rate)
     whole, parts = (torch.load(tmp_path / name / "checkpoint.pt")["net"] for name in ("whole", "parts"))
     assert all(torch.equal(whole[key], parts[key]) for key in whole)
+
+
+def test_batches_made_ahead_by_other_processes_are_the_same(data: Path) -> None:
+    sketches = quickdraw.read([data], limit=50)
+    canvases, config = Canvases(sketches, None, seed=3), Config(data="", batch=3, wide_every=2, wide_px=237, curved=0.3)
+    here, ahead = (feed(config, canvases, begin=1, workers=workers) for workers in (0, 2))
+    for ours, theirs in itertools.islice(zip(here, ahead, strict=True), 4):
+        assert np.array_equal(ours.ink, theirs.ink)
+        assert np.array_equal(ours.label, theirs.label)
+
+
+def test_batches_follow_each_other_without_gap_or_overlap() -> None:
+    config = Config(data="", batch=4, wide_every=3)
+    places = [place_of(config, number) for number in range(10)]
+    assert [first for first, _, _ in places] == [0, *itertools.accumulate(count for _, count, _ in places[:-1])]
+    assert [number for number, (_, _, side_px) in enumerate(places) if side_px] == [2, 5, 8]
+
+
+def test_a_run_stops_in_time_and_goes_on(data: Path, tmp_path: Path) -> None:
+    run(data, tmp_path, "--images", "100000", "--stop-after-s", "0")
+    assert run(data, tmp_path, "--images", "4", "--resume")[-1]["images"] >= 4
+    assert (tmp_path / "curves.png").stat().st_size > 1000
 
 
 @pytest.mark.parametrize("batch_norm", [False, True])
