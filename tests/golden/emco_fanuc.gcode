@@ -1,0 +1,29 @@
+(linedrawd: 3 strokes)
+%
+O0001
+G90 G17 G21 G94 G64
+G54 G0 Z5.0
+(stroke 0)
+G0 X30.0 Y40.0
+G1 Z-0.5 F480.0
+G1 X30.0 Y50.5 F1200.0
+G1 X41.25 Y50.5
+G0 Z5.0
+(stroke 1)
+G0 X50.0 Y30.0
+G1 Z-0.5 F480.0
+G1 X60.0 Y30.0 F1200.0
+G1 X60.0 Y40.0
+G1 X50.0 Y40.0
+G1 X50.0 Y30.0
+G0 Z5.0
+(stroke 2)
+G0 X12.346 Y0.0
+G1 Z-0.5 F480.0
+G0 Z5.0
+(no stroke)
+G0 X0.0 Y80.0
+M5
+M9
+M30
+%
