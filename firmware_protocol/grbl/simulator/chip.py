@@ -88,7 +88,7 @@ class Chip:
         self.abort = self.holding = self.soft_limit = False
         self.overrides: set[int] = set()
         self.feed_percent = self.rapid_percent = self.spindle_percent = 100
-        self.flood = False
+        self.flood = self.spindle_stopped = self.spindle_stop_asked = False
         self.reports_to_wco = self.reports_to_overrides = 0
         self.inbound.clear()
         self.lookahead.load_settings()

@@ -129,6 +129,8 @@ def _start(chip: Chip, signals: Signal) -> None:
         elif Suspend.RETRACTED in chip.suspend:
             chip.suspend |= Suspend.RESTORING
     held = chip.state is State.HOLD and Suspend.HOLD_COMPLETE in chip.suspend
+    if held and chip.spindle_stopped:
+        _stop_or_restore_spindle(chip)
     if chip.state is State.IDLE or held:
         goes_on = bool(chip.lookahead.blocks) and Suspend.CANCELLED not in chip.suspend
         chip.holding, chip.suspend = False, Suspend.NONE
@@ -145,6 +147,8 @@ def _stopped(chip: Chip) -> None:
         if chip.holding:
             chip.suspend |= Suspend.HOLD_COMPLETE
         chip.holding = False
+        if chip.spindle_stop_asked:
+            _stop_or_restore_spindle(chip)
         return
     if Suspend.JOG_CANCELLED in chip.suspend:
         chip.holding = False
@@ -204,9 +208,26 @@ def _override(chip: Chip) -> None:
         chip.spindle_percent, chip.reports_to_overrides = spindle, 0
         if chip.spindle_direction != 5:
             chip.set_spindle(chip.spindle_direction, chip.interpreter.modal.speed)
+    if 0x9E in asked and chip.state is State.HOLD:
+        chip.spindle_stop_asked = True
+        if Suspend.HOLD_COMPLETE in chip.suspend:
+            _stop_or_restore_spindle(chip)
     if 0xA0 in asked and chip.state in (State.IDLE, State.RUN, State.HOLD):
         chip.interpreter.modal.flood = not chip.flood
         chip.set_coolant(flood=not chip.flood)
+
+
+def _stop_or_restore_spindle(chip: Chip) -> None:
+    chip.spindle_stop_asked = False
+    modal = chip.interpreter.modal
+    if modal.spindle == 5:
+        return
+    if chip.spindle_stopped:
+        chip.say("[MSG:Restoring spindle]\r\n")
+        chip.set_spindle(modal.spindle, modal.speed)
+    else:
+        chip.set_spindle(5, 0.0)
+    chip.spindle_stopped = not chip.spindle_stopped
 
 
 def set_overrides(chip: Chip, feed: int, rapid: int) -> None:

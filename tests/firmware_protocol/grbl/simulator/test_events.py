@@ -196,8 +196,10 @@ def test_a_slow_usb_converter_delivers_in_packets_both_ways() -> None:
     conversation.send("\n")
     conversation.wait(0.1)
     assert conversation.time_of("ok") == pytest.approx(0.016 * (sent_s // 0.016 + 2), abs=1e-6)
+    conversation.send("\n")
+    assert [conversation.sim.advance(conversation.now + early_s) for early_s in (0.004, 0.008)] == [b"", b""]
     happens(conversation, "slow usb 0 ms")
     sent_s = conversation.now
     conversation.send("\n")
     conversation.wait(0.1)
-    assert conversation.time_of("ok", 1) - sent_s < 0.002
+    assert conversation.time_of("ok", 2) - sent_s < 0.002
