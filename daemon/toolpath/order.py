@@ -18,8 +18,8 @@ _DOORS = 16
 """On a closed stroke the nearest start is looked for on so many of its points first, on all of them at the end."""
 
 
-def order(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place) -> tuple[Stroke, ...]:
-    """The same strokes, drawn one after the other on a short way from start_mm to end_mm.
+def order(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place | None) -> tuple[Stroke, ...]:
+    """The same strokes, drawn one after the other on a short way from start_mm to end_mm, or to anywhere (None).
 
     A stroke may be drawn from its other end, a closed one (first point = last point) from any of its points; nothing
     else about it changes. Nearest neighbour first, then 2-opt and Or-opt on neighbour lists with local kicks (see
@@ -31,29 +31,42 @@ def order(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place) -> tuple
     given = list(strokes)
     greedy = _nearest(given, start_mm)
     best = min((given, greedy), key=lambda tour: _travel(tour, start_mm, end_mm))
-    improved = _turn_closed(_improved(best, start_mm, end_mm), start_mm, end_mm)
+    improved = turn_closed(_improved(best, start_mm, end_mm), start_mm, end_mm)
     if not any(map(is_closed, given)):
         return tuple(improved)
-    return tuple(_turn_closed(_improved(improved, start_mm, end_mm), start_mm, end_mm))
+    return tuple(turn_closed(_improved(improved, start_mm, end_mm), start_mm, end_mm))
 
 
 def is_closed(stroke: Stroke) -> bool:
     return len(stroke.points) > 2 and bool((stroke.points[0] == stroke.points[-1]).all())
 
 
-def _improved(strokes: list[Stroke], start_mm: Place, end_mm: Place) -> list[Stroke]:
+def turn_closed(strokes: list[Stroke], start_mm: Place, end_mm: Place | None) -> list[Stroke]:
+    """Each closed stroke begun where the way to it and from it is shortest."""
+    tour: list[Stroke] = []
+    here = np.asarray(start_mm, float)
+    for index, stroke in enumerate(strokes):
+        following = strokes[index + 1].points[0] if index + 1 < len(strokes) else end_mm
+        tour.append(_turned(stroke, here, here if following is None else np.asarray(following, float)))
+        here = tour[-1].points[-1]
+    return tour
+
+
+def _improved(strokes: list[Stroke], start_mm: Place, end_mm: Place | None) -> list[Stroke]:
     ends = np.array([[stroke.points[0], stroke.points[-1]] for stroke in strokes])
-    tour = improve(ends, start=np.asarray(start_mm, float), end=np.asarray(end_mm, float))
+    end = None if end_mm is None else np.asarray(end_mm, float)
+    tour = improve(ends, start=np.asarray(start_mm, float), end=end)
     return [_reversed(strokes[code >> 1]) if code & 1 else strokes[code >> 1] for code in tour.tolist()]
 
 
-def _travel(strokes: list[Stroke], start_mm: Place, end_mm: Place) -> float:
+def _travel(strokes: list[Stroke], start_mm: Place, end_mm: Place | None) -> float:
+    last = strokes[-1].points[-1]
     leave = np.array([start_mm, *(stroke.points[-1] for stroke in strokes)], float)
-    arrive = np.array([*(stroke.points[0] for stroke in strokes), end_mm], float)
+    arrive = np.array([*(stroke.points[0] for stroke in strokes), last if end_mm is None else end_mm], float)
     return float(np.hypot(*(arrive - leave).T).sum())
 
 
-def _nearest(strokes: list[Stroke], start_mm: Place) -> list[Stroke]:
+def _nearest(strokes: Sequence[Stroke], start_mm: Place) -> list[Stroke]:
     """Always on to the nearest end (or point of a closed stroke) that is left."""
     owner, point_index, places = _doors(strokes)
     here = np.asarray(start_mm, float)
@@ -72,7 +85,7 @@ def _nearest(strokes: list[Stroke], start_mm: Place) -> list[Stroke]:
     return tour
 
 
-def _doors(strokes: list[Stroke]) -> tuple[NDArray[np.int64], NDArray[np.int64], Points]:
+def _doors(strokes: Sequence[Stroke]) -> tuple[NDArray[np.int64], NDArray[np.int64], Points]:
     """Where strokes may be begun: whose, at which of its points, and where that is."""
     indices = [_door_indices(stroke) for stroke in strokes]
     owner = np.repeat(np.arange(len(strokes)), [len(some) for some in indices])
@@ -98,17 +111,6 @@ def _begun_at(stroke: Stroke, index: int) -> Stroke:
 
 def _reversed(stroke: Stroke) -> Stroke:
     return replace(stroke, points=stroke.points[::-1])
-
-
-def _turn_closed(strokes: list[Stroke], start_mm: Place, end_mm: Place) -> list[Stroke]:
-    """Each closed stroke begun where the way to it and from it is shortest."""
-    tour: list[Stroke] = []
-    here = np.asarray(start_mm, float)
-    for index, stroke in enumerate(strokes):
-        following = strokes[index + 1].points[0] if index + 1 < len(strokes) else np.asarray(end_mm, float)
-        tour.append(_turned(stroke, here, following))
-        here = tour[-1].points[-1]
-    return tour
 
 
 def _turned(stroke: Stroke, before: NDArray[np.float64], after: NDArray[np.float64]) -> Stroke:

@@ -11,6 +11,7 @@ from daemon.shapes import Affine, Drawing, Stroke, Toolpath
 from daemon.toolpath.order import order
 from daemon.toolpath.place import Layout, place, placement
 from daemon.toolpath.reach import check_reach
+from daemon.toolpath.rejoin import rejoined
 from daemon.toolpath.simplify import shared_points, simplify
 
 
@@ -38,14 +39,16 @@ def plan_toolpath(
     park_mm: tuple[float, float] = (0.0, 0.0),
     reach_mm: tuple[float, float] | None = None,
     reach_low_mm: tuple[float, float] = (0.0, 0.0),
+    rejoin: bool = True,
 ) -> Toolpath:
     """Everything in machine mm, y up; the picture lies in its box, its proportions kept.
 
     The box lies in machine coordinates: with origin "here" (the pen stands on the sheet's corner at start) the sheet's
     own, with origin "homed" plus `origin_mm`. start_mm: where the pen stands; park_mm: where it goes at the end.
-    reach_mm: width and height from reach_low_mm on, None where they are not known. No stroke is lost; a stroke may be
-    drawn from its other end, a closed one from another point; ends and crossings lie exactly where they were. Raises
-    NothingToDraw without strokes, OutOfReach before anything moves.
+    reach_mm: width and height from reach_low_mm on, None where they are not known. No line is lost; a stroke may be
+    drawn from its other end, a closed one from another point, and strokes that share points may be joined otherwise
+    there (see `rejoined`) unless rejoin is False; ends and crossings lie exactly where they were. Raises NothingToDraw
+    without strokes, OutOfReach before anything moves.
     """
     if not drawing.strokes:
         raise NothingToDraw(
@@ -56,7 +59,9 @@ def plan_toolpath(
     placed = _placed(drawing, from_px, precision)
     if reach_mm is not None:
         check_reach(placed, reach_mm=reach_mm, reach_low_mm=reach_low_mm, park_mm=park_mm)
-    return Toolpath(order(placed, start_mm=start_mm, end_mm=park_mm), from_px, start_mm, park_mm)
+    tour = order(placed, start_mm=start_mm, end_mm=park_mm)
+    tour = rejoined(tour, start_mm=start_mm, end_mm=park_mm) if rejoin else tour
+    return Toolpath(tour, from_px, start_mm, park_mm)
 
 
 def _placed(drawing: Drawing, from_px: Affine, precision: Precision) -> list[Stroke]:

@@ -24,16 +24,18 @@ _KICKS_A_SEGMENT, _MOST_KICKS = 5, 500
 _LEAST_GAIN = 1e-9
 
 
-def improve(ends: NDArray[np.float64], *, start: Place, end: Place) -> Codes:
+def improve(ends: NDArray[np.float64], *, start: Place, end: Place | None) -> Codes:
     """The tour 0, 1, 2, ... made shorter: 2-opt (Croes 1958) and Or-opt (Or 1976), kicked on by double bridges.
 
-    ends: (N, 2, 2) float64, both ends of each segment as (x, y). start, end: (2,) where the tour begins and ends.
+    ends: (N, 2, 2) float64, both ends of each segment as (x, y). start, end: (2,) where the tour begins and ends; with
+    no end it ends where its last segment does.
     Returns (N,) int64 codes. Never longer than the given tour, and the same for the same input: the work is bounded by
     the number of segments, never by a clock. Iterated local search after Martin, Otto and Felten (1991), the kicks
     local, so that a round costs the same on a large page.
     """
     # A last segment leads from the end back to the start: the tour is a ring, and every move may turn either side.
-    tour = _Tour(np.concatenate([ends.reshape(-1, 2), [end, start]]))
+    doors = np.concatenate([ends.reshape(-1, 2), [start if end is None else end, start]])
+    tour = Tour(doors) if end is not None else _OpenTour(doors)
     tour.settle(list(range(len(tour.x))))
     chance = random.Random(0)
     for _ in range(min(_MOST_KICKS, _KICKS_A_SEGMENT * len(ends)) if len(ends) > 2 else 0):
@@ -41,20 +43,20 @@ def improve(ends: NDArray[np.float64], *, start: Place, end: Place) -> Codes:
     return np.array(tour.opened(), np.int64)
 
 
-class _Tour:
+class Tour:
     """A ring of segments. A door is an end of a segment, 2 i or 2 i + 1; a link joins two doors of two segments.
 
     `ring` holds the door by which each segment is entered, `at` the place of each segment in it.
     """
 
-    __slots__ = ("_done", "at", "near", "ring", "x", "y")
+    __slots__ = ("at", "moves", "near", "ring", "x", "y")
 
     def __init__(self, doors: NDArray[np.float64]) -> None:
         self.x, self.y = doors[:, 0].tolist(), doors[:, 1].tolist()
         self.near = nearest_doors(doors, _NEIGHBOURS)
         self.ring = list(range(0, len(doors), 2))
         self.at = list(range(len(self.ring)))
-        self._done: list[tuple[int, int, int, int]] = []
+        self.moves: list[tuple[int, int, int, int]] = []
 
     def opened(self) -> list[int]:
         """The codes from the start to the end: the ring cut at its last segment."""
@@ -80,20 +82,29 @@ class _Tour:
         first = chance.randrange(size)
         near, far = self.ring[first], self.ring[(first + one - 1) % size] ^ 1
         leave = self.ring[(first + one + other - 1) % size] ^ 1
-        self._done.clear()
-        gain, moved = self._carry(near, far, leave)
+        self.mark()
+        gain, moved = self.carry(near, far, leave)
         if gain + self.settle(moved) < -_LEAST_GAIN:
-            for a, b, c, d in reversed(self._done):
-                self._flip(a, c, b, d)
+            self.go_back()
 
-    def _far(self, a: int, b: int) -> float:
+    def mark(self) -> None:
+        """What is moved from now on can be taken back."""
+        self.moves.clear()
+
+    def go_back(self) -> None:
+        """To how the tour was at the last mark."""
+        for a, b, c, d in reversed(self.moves):
+            self.flip(a, c, b, d)
+
+    def far(self, a: int, b: int) -> float:
+        """What a link between two doors costs."""
         return math.hypot(self.x[a] - self.x[b], self.y[a] - self.y[b])
 
-    def _entered(self, door: int) -> bool:
+    def entered(self, door: int) -> bool:
         """Whether the segment is entered by this door; else it is left by it."""
         return self.ring[self.at[door >> 1]] == door
 
-    def _mate(self, door: int) -> int:
+    def mate(self, door: int) -> int:
         """The door at the other end of this door's link."""
         at = self.at[door >> 1]
         if self.ring[at] == door:
@@ -103,19 +114,19 @@ class _Tour:
     def _improve(self, door: int, moved: list[int]) -> float:
         """The first move that brings a neighbour of this door next to it and makes the tour shorter; 0 for none."""
         ring, at = self.ring, self.at
-        mate, entered = self._mate(door), ring[at[door >> 1]] == door
-        link = self._far(door, mate)
+        mate, entered = self.mate(door), ring[at[door >> 1]] == door
+        link = self.far(door, mate)
         for other, new in self.near[door]:
             if new >= link:
                 break
             if other == mate:
                 continue
-            beyond = self._mate(other)
-            saved = link - new + self._far(other, beyond)
+            beyond = self.mate(other)
+            saved = link - new + self.far(other, beyond)
             if (ring[at[other >> 1]] == other) == entered:
-                gain = saved - self._far(mate, beyond)
-                if gain > _LEAST_GAIN and self._short(door, other):
-                    self._flip(door, mate, other, beyond)
+                gain = saved - self.far(mate, beyond)
+                if gain > _LEAST_GAIN and self.short(door, other):
+                    self.flip(door, mate, other, beyond)
                     moved += (door, mate, other, beyond)
                     return gain
             gain = self._or_opt((door, mate, other, beyond), saved, moved)
@@ -134,40 +145,41 @@ class _Tour:
                 return 0.0
             place = (place + step) % size
             far, after = (code ^ 1, ring[place]) if step > 0 else (code, ring[place] ^ 1)
-            gain = saved + self._far(far, after) - self._far(before, after) - self._far(far, beyond)
-            if gain > _LEAST_GAIN and self._short(near, target):
-                moved += self._carry(near, far, target)[1]
+            gain = saved + self.far(far, after) - self.far(before, after) - self.far(far, beyond)
+            if gain > _LEAST_GAIN and self.short(near, target):
+                moved += self.carry(near, far, target)[1]
                 return gain
         return 0.0
 
-    def _short(self, a: int, b: int) -> bool:
+    def short(self, a: int, b: int) -> bool:
+        """Whether the stretch between the segments of two doors may be turned round."""
         away = abs(self.at[a >> 1] - self.at[b >> 1])
         return min(away, len(self.ring) - away) <= _LONGEST_FLIP
 
-    def _carry(self, near: int, far: int, target: int) -> tuple[float, list[int]]:
+    def carry(self, near: int, far: int, target: int) -> tuple[float, list[int]]:
         """Carry the run from door `near` to door `far` into the link of `target`, `near` next to it.
 
         Returns by how much the tour is shorter and the six doors whose links are new.
         """
-        before, after, beyond = self._mate(near), self._mate(far), self._mate(target)
-        gain = self._far(before, near) + self._far(far, after) + self._far(target, beyond)
-        gain -= self._far(before, after) + self._far(near, target) + self._far(far, beyond)
-        if self._entered(near) == self._entered(target):
-            self._flip(before, near, beyond, target)
-            self._flip(before, beyond, after, far)
+        before, after, beyond = self.mate(near), self.mate(far), self.mate(target)
+        gain = self.far(before, near) + self.far(far, after) + self.far(target, beyond)
+        gain -= self.far(before, after) + self.far(near, target) + self.far(far, beyond)
+        if self.entered(near) == self.entered(target):
+            self.flip(before, near, beyond, target)
+            self.flip(before, beyond, after, far)
         else:
-            self._flip(before, near, far, after)
-            self._flip(before, far, target, beyond)
-            self._flip(before, target, after, near)
+            self.flip(before, near, far, after)
+            self.flip(before, far, target, beyond)
+            self.flip(before, target, after, near)
         return gain, [before, near, far, after, target, beyond]
 
-    def _flip(self, a: int, b: int, c: int, d: int) -> None:
-        """Links a-b and c-d become a-c and b-d; one of the two stretches between them is turned round."""
+    def flip(self, a: int, b: int, c: int, d: int) -> None:
+        """Links a-b and c-d become a-c and b-d, a and c entered both or both left; one stretch is turned round."""
         if a == d or b == c:
             return
-        self._done.append((a, b, c, d))
+        self.moves.append((a, b, c, d))
         size = len(self.ring)
-        first, last = (a, d) if self._entered(a) else (b, c)
+        first, last = (a, d) if self.entered(a) else (b, c)
         low, high = self.at[first >> 1], self.at[last >> 1]
         count = (high - low) % size + 1
         if 2 * count > size:
@@ -182,3 +194,13 @@ class _Tour:
         for place, code in zip(places, turned, strict=True):
             ring[place] = code
             at[code >> 1] = place
+
+
+class _OpenTour(Tour):
+    """A tour that may end anywhere: the link to the end of its last segment costs nothing."""
+
+    __slots__ = ()
+
+    def far(self, a: int, b: int) -> float:
+        end = len(self.x) - 2
+        return 0.0 if end in (a, b) else super().far(a, b)

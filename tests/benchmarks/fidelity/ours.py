@@ -21,9 +21,11 @@ from daemon.report import canvas
 from daemon.report.explain import explain
 from daemon.shapes import Drawing, Grey, LineGraph, PageImage, Points, Segmentation
 from daemon.toolpath.order import order
+from daemon.toolpath.rejoin import rejoined
 from daemon.vision.segmenter import Segmenter
 
 Value = TypeVar("Value")
+_HOME = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,9 +52,9 @@ def understood(grey: Grey) -> Understood:
     graph, graph_ms = _timed(lambda: interpret(page, segmentation))
     on_page, strokes_ms = _timed(lambda: strokes(graph, width_px=page.grey.shape[1], height_px=page.grey.shape[0]))
     drawing, back_ms = _timed(lambda: on_given(on_page, page))
-    ordered = [stroke.points for stroke in order(drawing.strokes, start_mm=(0.0, 0.0), end_mm=(0.0, 0.0))]
+    tour = rejoined(order(drawing.strokes, start_mm=_HOME, end_mm=_HOME), start_mm=_HOME, end_mm=_HOME)
     cpu_ms = page_ms + network_ms + graph_ms + strokes_ms + back_ms
-    return Understood(ordered, page, segmentation, graph, on_page, cpu_ms, network_ms)
+    return Understood([stroke.points for stroke in tour], page, segmentation, graph, on_page, cpu_ms, network_ms)
 
 
 def explained(seen: Understood, name: str) -> bytes:

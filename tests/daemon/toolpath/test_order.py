@@ -100,6 +100,15 @@ def test_random_strokes_are_travelled_nearly_as_shortly_as_is_known(count: int, 
     assert travelled(order(random_lines(count), start_mm=(0, 0), end_mm=(0, 0)), (0, 0), (0, 0)) < most_mm
 
 
+def test_a_tour_may_end_anywhere() -> None:
+    near, far = line((10, 0), (10, 5)), line((-90, 0), (-90, 5))
+    assert [stroke.points[0, 0] for stroke in order([far, near], start_mm=(0, 0), end_mm=None)] == [10, -90]
+    assert [stroke.points[0, 0] for stroke in order([far, near], start_mm=(0, 0), end_mm=(10, 0))] == [-90, 10]
+    square = line((5, 5), (9, 5), (9, 9), (5, 9), (5, 5))
+    (drawn,) = order([square], start_mm=(10, 10), end_mm=None)
+    assert drawn.points[0].tolist() == [9, 9]
+
+
 def test_dots_and_no_strokes_at_all_are_fine() -> None:
     dots = [line((5, 5)), line((1, 1)), line((3, 3))]
     assert [stroke.points[0, 0] for stroke in order(dots, start_mm=(0, 0), end_mm=(9, 9))] == [1, 3, 5]

@@ -102,8 +102,10 @@ def test_every_stroke_arrives_inside_the_box_with_its_length(strokes: list[list[
 
 
 def test_lines_that_cross_are_joined_for_less_travel_unless_they_are_to_stay() -> None:
-    crossing = drawing([(0, 50), (10, 50), (90, 55)], [(10, 40), (10, 50), (90, 60)])
-    joined, kept = (plan_toolpath(crossing, rejoin=rejoin) for rejoin in (True, False))
+    crossing = drawing([(0, 50), (50, 50), (100, 50)], [(50, 40), (50, 50), (50, 60)])
+    joined, kept = (
+        plan_toolpath(crossing, start_mm=(25, 57), park_mm=(89, 57), rejoin=rejoin) for rejoin in (True, False)
+    )
     assert len(joined.strokes) == len(kept.strokes) == 2
     assert joined.travelled_mm < kept.travelled_mm - 1
     assert joined.drawn_mm == pytest.approx(kept.drawn_mm)

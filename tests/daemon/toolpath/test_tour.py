@@ -37,6 +37,18 @@ def test_every_segment_is_walked_once_and_the_tour_is_no_longer(count: int, seed
     assert travelled(ends, codes) <= travelled(ends, list(range(0, 2 * count, 2))) + 1e-6
 
 
+def test_a_tour_that_may_end_anywhere_is_shorter_than_one_that_has_an_end_left_out() -> None:
+    def without_the_way_back(codes: NDArray[np.int64]) -> float:
+        stops = [START, *(ends.reshape(-1, 2)[door] for code in codes.tolist() for door in (code, code ^ 1))]
+        return float(sum(np.hypot(*(b - a)) for a, b in list(pairwise(stops))[::2]))
+
+    free = bound = 0.0
+    for ends in (random_ends(20, seed) for seed in range(5)):
+        free += without_the_way_back(improve(ends, start=START, end=None))
+        bound += without_the_way_back(improve(ends, start=START, end=START))
+    assert free < 0.97 * bound
+
+
 def test_kicks_make_a_tour_shorter_than_its_moves_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     ends = [random_ends(60, seed) for seed in range(5)]
     kicked = sum(travelled(each, improve(each, start=START, end=END).tolist()) for each in ends)
