@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from daemon.config import Machine, Settings, Sheet
+from daemon.config import Machine, Settings
 from daemon.errors import LinedrawError
 from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
@@ -70,7 +70,7 @@ def plan_picture(
         on_page = _strokes(graph, page, settings)
         drawing = on_given(on_page, page)
     with stages("toolpath"):
-        toolpath = _toolpath(drawing, page, settings.sheet, settings.machines[machine])
+        toolpath = _toolpath(drawing, page, settings, settings.machines[machine])
     with stages("program"):
         program = program_of(toolpath, settings.machines[machine], name)
         estimated_s = seconds_of(program, settings.machines[machine])
@@ -144,7 +144,8 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
     return strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
 
 
-def _toolpath(drawing: Drawing, page: PageImage, sheet: Sheet, machine: Machine) -> Toolpath:
+def _toolpath(drawing: Drawing, page: PageImage, settings: Settings, machine: Machine) -> Toolpath:
+    sheet = settings.sheet
     corner_mm = box_origin_mm(sheet, machine)
     given_px = float(np.sqrt(abs(np.linalg.det(page.to_given[:, :2]))))
     return plan_toolpath(
@@ -155,6 +156,7 @@ def _toolpath(drawing: Drawing, page: PageImage, sheet: Sheet, machine: Machine)
         park_mm=machine.park_mm,
         reach_mm=reach_mm(machine),
         reach_low_mm=reach_low_mm(sheet, machine),
+        rejoin=settings.planning.graph != "paper",
     )
 
 
