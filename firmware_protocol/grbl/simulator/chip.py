@@ -77,6 +77,8 @@ class Chip:
         self.sheet_mm: Vector = HERE
         """Where machine zero lies on the sheet: moves when the position is lost or set anew."""
         self.inputs, self._felt = Inputs(), frozenset[int]()
+        self.swallows_alarm = False
+        """The main loop looks for an alarm just before an interrupt sets it, and then finds a reset only."""
         self.state = State.IDLE
         self.probe_mm, self.probed = HERE, False
         self.restart()
@@ -93,7 +95,7 @@ class Chip:
         self.inbound.clear()
         self.lookahead.load_settings()
         self.lookahead.feed_override = self.lookahead.rapid_override = 1.0
-        self.stepper.place(self.stepper.now_at()[0])
+        self.stepper.stop(self.now)
         self.interpreter.reset(self.stepper.position_mm)
         self.probe_mm, self.probed = HERE, False
         self.probe_for: bool | None = None
@@ -121,14 +123,17 @@ class Chip:
         if Signal.RESET in self.signals:
             return
         self.signals |= Signal.RESET
-        self.set_spindle(5, 0.0)
-        self.flood = False
         if self.state in _MOVING or self.holding:
             if self.state is State.HOMING:
                 self.alarm = self.alarm or 6
             else:
                 self.alarm = 3
             self.stop_motors(always=True)
+        else:
+            self.stepper.stop(self.now)
+        # Only now: what has been drawn so far was drawn with the servo where it was.
+        self.set_spindle(5, 0.0)
+        self.flood = False
 
     @property
     def limits(self) -> frozenset[int]:

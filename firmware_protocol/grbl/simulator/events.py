@@ -15,6 +15,7 @@ from firmware_protocol.grbl.simulator.faults import (
     LoseOk,
     SlowUsb,
     Unplug,
+    UnsaidAlarm,
 )
 
 
@@ -76,14 +77,16 @@ class PlugIn:
 
 Touch: TypeAlias = AllOpen | Limit | LimitAt | Contact | Surface | Pin
 """What changes an input of the controller."""
-Event: TypeAlias = Touch | HardwareReset | PlugIn | DropByte | FlipByte | LoseOk | SlowUsb | Hang | BrownOut | Unplug
+Event: TypeAlias = (
+    Touch | HardwareReset | PlugIn | DropByte | FlipByte | LoseOk | SlowUsb | UnsaidAlarm | Hang | BrownOut | Unplug
+)
 """Numbers of bytes and answers are counted from now on."""
 
 SENTENCES = (
     "all inputs open", "limit x|y|z closed|open", "switch x|y|z closes at +4.000 mm", "probe closed|open",
     "probe contact at and below z -0.500 mm", "pin hold|start|reset low|high", "hardware reset",
     "dtr reset (boot loader deaf for 1.5 s)", "lose byte [N]", "flip byte [N] [bits B]", "lose ok [N]", "hang",
-    "brown-out", "unplug", "plug in", "slow usb T ms",
+    "brown-out", "unplug", "plug in", "slow usb T ms", "unsaid alarm",
 )  # fmt: skip
 """Everything that `read_event` understands; N counts from 0, which is the next one."""
 
@@ -126,6 +129,7 @@ _READERS: tuple[tuple[re.Pattern[str], _Reader], ...] = tuple(
         ("brown-out", lambda: BrownOut(at_s=0.0)),
         ("unplug", lambda: Unplug(at_s=0.0)),
         ("plug in", PlugIn),
+        ("unsaid alarm", UnsaidAlarm),
         (r"slow usb (\d+(?:\.\d+)?) ms", lambda latency: SlowUsb(float(latency) / 1000)),
     )
 )

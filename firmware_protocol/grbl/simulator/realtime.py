@@ -17,6 +17,8 @@ Routine: TypeAlias = Generator[Wait, None, None]
 
 ALARM_DELAY_S = 0.5
 REPORT_S = 0.003
+REPORT_IN_MOTION_S = 0.001
+"""Measured by the lines that a stream loses: 1 % at 10 reports a second, 11 % at 100."""
 OVERRIDE_S = 0.00025
 SPINDLE_RESTART_S = 4.0
 COOLANT_RESTART_S = 1.0
@@ -43,7 +45,7 @@ def synchronize(chip: Chip) -> Routine:
     while True:
         if chip.attention:
             yield from execute_realtime(chip)
-        if chip.abort or not (chip.lookahead.blocks or chip.state is State.RUN):
+        if chip.abort or not (chip.lookahead.blocks or chip.stepper.moving or chip.state is State.RUN):
             return
         yield None
 
@@ -55,13 +57,15 @@ def start_cycle(chip: Chip) -> None:
 
 
 def _look(chip: Chip) -> Routine:
+    if chip.swallows_alarm and chip.alarm in (1, 3):
+        chip.swallows_alarm, chip.alarm = False, 0
     if chip.alarm:
         yield from _alarm(chip)
     if Signal.RESET in chip.signals:
         chip.abort = True
         return
     if Signal.STATUS in chip.signals:
-        yield chip.now + REPORT_S
+        yield chip.now + (REPORT_IN_MOTION_S if chip.stepper.moving else REPORT_S)
         chip.signals &= ~Signal.STATUS
         chip.say(status.report(chip))
     signals = chip.signals

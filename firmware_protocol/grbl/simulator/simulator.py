@@ -19,6 +19,7 @@ from firmware_protocol.grbl.simulator.faults import (
     SlowUsb,
     Timed,
     Unplug,
+    UnsaidAlarm,
 )
 from firmware_protocol.grbl.simulator.inputs import Inputs, Switch
 from firmware_protocol.grbl.simulator.lookahead import Vector
@@ -36,8 +37,8 @@ _FEEL_S = 0.001
 class GrblSimulator:
     """Bytes and the time come in, bytes and ink come out.
 
-    Not modelled: laser mode ($32), single steps and lost steps, mist coolant (a build of its own), the firmware's
-    rare race of a reset without its alarm, and `$N2=` and `$N3=`, which here do nothing.
+    Not modelled: laser mode ($32), single steps and lost steps, mist coolant (a build of its own), and `$N2=` and
+    `$N3=`, which here do nothing.
 
     settings: `$` numbers to values that differ from the generic defaults. pen: when it touches the sheet.
     boot_s: how long the boot loader is deaf after `open`. switches_mm: where the homing switches lie, from the place
@@ -106,6 +107,7 @@ class GrblSimulator:
         self._sent = self._oks = 0
         self._asked = []
         self._set_latency(next((fault.latency_s for fault in self._faults if isinstance(fault, SlowUsb)), 0.0))
+        self._chip.swallows_alarm = UnsaidAlarm() in self._faults
         self._timed = [(now + f.at_s, f) for f in self._timed_faults if f.at_s is not None]
         self._timed.sort(key=_moment)
         self._outbound.unplug(now)
@@ -133,6 +135,8 @@ class GrblSimulator:
                 self._power_on(deaf_s)
             case PlugIn():
                 self.unplugged = False
+            case UnsaidAlarm():
+                self._chip.swallows_alarm = True
             case SlowUsb(latency_s):
                 self._set_latency(latency_s)
             case DropByte(index) | FlipByte(index):

@@ -58,6 +58,18 @@ def test_a_hard_limit_stops_and_says_nothing_more_until_a_reset() -> None:
     assert said == [*BANNER, "[MSG:Check Limits]", "[MSG:'$H'|'$X' to unlock]"]
 
 
+@pytest.mark.parametrize("byte", ["\x18", ""])
+def test_an_alarm_may_go_unsaid(byte: str) -> None:
+    conversation = talk(settings={**BRISK, 21: 1})
+    conversation.ask("G1X50F900\n", within_s=0.3)
+    happens(conversation, "unsaid alarm")
+    said = conversation.ask(byte, within_s=0.4) if byte else happens(conversation, "limit x closed", then_s=0.4)
+    assert said == BANNER + ([] if byte else ["[MSG:Check Limits]", "[MSG:'$H'|'$X' to unlock]"])
+    assert ("<Idle|" if byte else "<Alarm|") in state(conversation)
+    assert conversation.ask("$X\nG1X50F900\n", within_s=0.3)[-1] == "ok"
+    assert conversation.ask("\x18", within_s=0.4) == ["ALARM:3"]
+
+
 def test_letting_a_switch_go_is_an_edge_too() -> None:
     conversation = talk()
     happens(conversation, "limit x closed")

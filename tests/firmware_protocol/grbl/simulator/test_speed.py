@@ -4,19 +4,38 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from tests.firmware_protocol.grbl.bench import BRISK, talk
+import pytest
+
+from tests.firmware_protocol.grbl.bench import BRISK, Talk
 
 QUICK = BRISK | dict.fromkeys((100, 101, 102), 40) | dict.fromkeys((110, 111, 112), 30000)
 QUICK |= dict.fromkeys((120, 121, 122), 5000)
 LINES = [f"G1X{12 + 8 * cos(step / 160):.3f}Y{12 + 8 * sin(step / 160):.3f}" for step in range(500)]
 
 
-def rate(*, check: bool, window: int = 128) -> float:
-    conversation = talk(settings=QUICK)
+class Poller(Talk):
+    """A sender that asks for the state so often, besides sending lines."""
+
+    every_s = float("inf")
+    next_s = float("inf")
+
+    def _hear(self, now: float) -> None:
+        if now >= self.next_s:
+            self.send("?")
+            self.next_s = now + self.every_s
+        super()._hear(now)
+
+
+def rate(*, check: bool, window: int = 128, polls_hz: float = 0.0) -> float:
+    conversation = Poller(settings=QUICK)
+    conversation.wait(2.0)
     conversation.ask("$C\n" if check else "G90\n")
     conversation.ask(f"F30000{LINES[0]}\n", within_s=1.0)
     began_s = conversation.now
-    assert set(conversation.stream(LINES, window)) == {"ok"}
+    if polls_hz:
+        conversation.every_s, conversation.next_s = 1 / polls_hz, began_s
+    said = conversation.stream(LINES, window)
+    assert {line for line in said if not line.startswith("<")} == {"ok"}
     assert conversation.sim.overflows == 0
     return len(LINES) / (conversation.now - began_s)
 
@@ -32,3 +51,8 @@ def test_in_check_mode_the_wire_is_the_limit() -> None:
 
 def test_waiting_for_each_answer_halves_the_rate() -> None:
     assert 180 <= rate(check=False, window=1 + max(map(len, LINES))) <= 260
+
+
+@pytest.mark.parametrize(("polls_hz", "least", "most"), [(10, 0.96, 1.0), (100, 0.85, 0.93)])
+def test_asking_for_the_state_costs_as_many_lines_as_on_a_real_one(polls_hz: float, least: float, most: float) -> None:
+    assert least <= rate(check=False, polls_hz=polls_hz) / rate(check=False) <= most
