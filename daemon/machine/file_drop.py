@@ -118,7 +118,7 @@ class FileDrop:
         if self._until_stopped(self._stop_asked, seconds):
             return _taken_back(file, data, strokes)
         why = f"{file} was handed over and, by the time model, drawn if it was started at once: look at the sheet"
-        return Ended(Verdict.FINISHED, strokes, strokes, True, True, why, estimated=True)
+        return Ended(Verdict.FINISHED, 0, strokes, True, True, why, estimated=True)
 
     def _fault(self) -> str:
         if not self._folder.is_dir():

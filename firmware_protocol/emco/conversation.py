@@ -124,9 +124,9 @@ def _ended(job: Job, before: State, signal: Signal, why: str) -> Ended:
     if before is State.WAITING and signal is not Signal.UNPLUG:
         return job.untouched(sentences.NOT_BEGUN)
     if signal is Signal.TIME and before is State.DRAWING:
-        return job.drawn(Verdict.FINISHED, sentences.FINISHED)
+        return job.ended(Verdict.FINISHED, sentences.FINISHED, estimated=True)
     if signal is Signal.TIME:
-        return job.drawn(Verdict.STOPPED, sentences.STOPPED)
+        return job.ended(Verdict.STOPPED, sentences.STOPPED, estimated=True)
     if before in STOPPING and signal is not Signal.UNPLUG:
         return job.ended(Verdict.STOPPED, sentences.NOT_LIFTED)
     return job.ended(_VERDICTS[signal], why or sentences.ABORTED)

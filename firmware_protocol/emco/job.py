@@ -98,22 +98,19 @@ class Job:
         self.blocks[self.begun :] = [text.encode("ascii") + self._line_end for text in texts]
         self._ends = list(accumulate(map(len, self.blocks)))
 
-    def ended(self, verdict: Verdict, why: str) -> Ended:
-        """An end of which nothing is known but what has been proven."""
+    def ended(self, verdict: Verdict, why: str, *, estimated: bool = False) -> Ended:
+        """Certain is what has been proven. estimated: by the time model all that was handed over is drawn."""
         certain = strokes_before(self._strokes, min(self.proven, self._cut))
         possible = strokes_touched(self._strokes, min(self.begun, self._cut))
-        return Ended(verdict, min(certain, possible), possible, position_known=False, pen_lifted=False, why=why)
+        return Ended(
+            verdict, min(certain, possible), possible,
+            position_known=estimated, pen_lifted=estimated, why=why, estimated=estimated,
+        )  # fmt: skip
 
     def untouched(self, why: str) -> Ended:
         """Stopped before a byte was handed over."""
         none = strokes_touched(self._strokes, 0)
         return Ended(Verdict.STOPPED, none, none, position_known=True, pen_lifted=False, why=why)
-
-    def drawn(self, verdict: Verdict, why: str) -> Ended:
-        """All that was handed over is drawn, by the time model."""
-        strokes = strokes_touched(self._strokes, self._cut)
-        whole = strokes if self._cut == len(self._strokes) else strokes_before(self._strokes, self._cut)
-        return Ended(verdict, whole, strokes, position_known=True, pen_lifted=True, why=why, estimated=True)
 
 
 def check_plain(texts: Sequence[str]) -> None:

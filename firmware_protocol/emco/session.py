@@ -29,9 +29,10 @@ class XonXoffSession:
     comes when a person presses START there. xoff_limit_s: after an XOFF that lasts this long the job is over.
     seven_bit: even parity is made and removed here, for a port that is set to 8 bits. times: the time model.
 
-    The control never says what it has drawn: `Sent` tells that it has everything, and the end is an estimate. After
-    an end with an unknown position the session is over: open the port again. Methods: XON/XOFF as in Fanuc, Siemens
-    and Haas manuals; no document says that WinNC obeys it.
+    The control never says what it has drawn: `Sent` tells that it has everything, and the end is an estimate, which
+    claims no more strokes for certain than the control's XON and XOFF have proven. After an end with an unknown
+    position the session is over: open the port again. Methods: XON/XOFF as in Fanuc, Siemens and Haas manuals; no
+    document says that WinNC obeys it.
     """
 
     def __init__(

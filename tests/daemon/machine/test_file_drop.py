@@ -65,7 +65,7 @@ def test_sent_is_said_first_and_drawn_is_an_estimate_after_its_time(tmp_path: Pa
     drop.machine.connect()
     end = drop.draw()
     assert [type(event) for event in drop.events] == [Ready, Sent, Ended]
-    assert (end.verdict, end.strokes_certain, end.estimated) == (Verdict.FINISHED, 2, True)
+    assert (end.verdict, end.strokes_certain, end.strokes_possible, end.estimated) == (Verdict.FINISHED, 0, 2, True)
     (waited_s,) = drop.waited_s
     # Two lines of 40 mm at 10 mm/s, the pen lowered twice, and the way there.
     assert 8 < waited_s < 18

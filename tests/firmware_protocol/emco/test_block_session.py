@@ -113,7 +113,7 @@ def test_sent_comes_with_the_last_answer_and_the_end_by_the_time_model() -> None
     assert play.wait(90) == b""
     play.wait(20)
     end = play.ended
-    assert (end.verdict, end.strokes_certain, end.estimated) == (Verdict.FINISHED, 4, True)
+    assert (end.verdict, end.strokes_certain, end.strokes_possible, end.estimated) == (Verdict.FINISHED, 0, 4, True)
     assert [event.line for event in play.events if isinstance(event, Accepted)] == list(range(len(JOB)))
 
 
