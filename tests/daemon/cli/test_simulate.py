@@ -21,10 +21,10 @@ from firmware_protocol.grbl.simulator.events import SENTENCES
 from firmware_protocol.grbl.simulator.simulator import GrblSimulator
 
 
-def parse(*arguments: str) -> argparse.Namespace:
+def parse(*arguments: str, machine: str = "grbl") -> argparse.Namespace:
     parser = argparse.ArgumentParser()
     simulate.add_parser(parser.add_subparsers())
-    return parser.parse_args(["simulate", "grbl", *arguments])
+    return parser.parse_args(["simulate", machine, *arguments])
 
 
 def stop_when(link: Path) -> None:
@@ -39,11 +39,12 @@ def stop_when(link: Path) -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
-def test_sigterm_ends_it_cleanly_and_the_ink_is_written(tmp_path: Path) -> None:
+@pytest.mark.parametrize("machine", ["grbl", "emco", "dobot"])
+def test_sigterm_ends_it_cleanly_and_the_ink_is_written(machine: str, tmp_path: Path) -> None:
     link, ink = tmp_path / "grbl", tmp_path / "ink.json"
     before = signal.getsignal(signal.SIGTERM)
     stop_when(link)
-    assert simulate.run(parse("--pty", str(link), "--ink", str(ink))) == 0
+    assert simulate.run(parse("--pty", str(link), "--ink", str(ink), machine=machine)) == 0
     assert json.loads(ink.read_text()) == {"polylines_mm": []}
     assert not link.is_symlink()
     assert signal.getsignal(signal.SIGTERM) is before
@@ -56,9 +57,18 @@ def test_ink_that_cannot_be_written_is_said(tmp_path: Path) -> None:
         simulate.run(parse("--pty", str(link), "--ink", str(tmp_path / "none" / "ink.json")))
 
 
-def test_a_machine_that_cannot_be_understood_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="no option sped"):
-        simulate.run(parse("--pty", str(tmp_path / "grbl"), "--url", "sim://grbl?sped=1"))
+@pytest.mark.parametrize(
+    ("machine", "url", "why"),
+    [
+        ("grbl", "sim://grbl?sped=1", "no option sped"),
+        ("emco", "sim://emco?sped=1", "sped.*: write for example dialect=fanuc"),
+        ("dobot", "sim://dobot?sped=1", "sped.*: write for example depth=32"),
+        ("dobot", "sim://grbl", "no simulated dobot: write sim://dobot"),
+    ],
+)
+def test_a_machine_that_cannot_be_understood_is_refused(machine: str, url: str, why: str, tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=why):
+        simulate.run(parse("--pty", str(tmp_path / machine), "--url", url, machine=machine))
 
 
 def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
