@@ -202,7 +202,7 @@ def index_of(packet: Packet) -> int:
 
 def text_of(written: Command) -> str:
     """A command in one line: its name, whole numbers as they are, the others with three decimals."""
-    codes = _codes(written.kind.writes or "")
+    codes = field_codes(written.kind.writes or "")
     words = [
         f"{round(float(value), 3) + 0.0:.3f}" if code == "f" else str(value)
         for value, code in zip(written.values, codes, strict=False)
@@ -220,7 +220,7 @@ def parse(text: str) -> Command:
         return Command(kind, (" ".join(words),))
     if kind.optional and not words:
         return Command(kind)
-    codes = _codes(kind.writes)
+    codes = field_codes(kind.writes)
     if len(words) != len(codes):
         raise LocalProtocolError(f"{text!r}: {name} takes {' '.join(kind.fields) or 'nothing'}")
     try:
@@ -257,7 +257,7 @@ def _text_bytes(kind: Kind, values: Values) -> bytes:
         raise LocalProtocolError(f"{kind.name} takes one text of plain letters, not {values}") from error
 
 
-def _codes(structure: str) -> str:
+def field_codes(structure: str) -> str:
     """One letter a field: `<B2f` becomes `Bff`."""
     if structure == TEXT:
         return "s"

@@ -243,6 +243,7 @@ class Conversation:
         self._doom(turn)
 
     def _enter_lost(self, turn: Turn) -> None:
+        self.exchange.forget()
         if turn.signal is Signal.SILENCE:
             self.parting = STOP_NOW
         if self._job is None:

@@ -41,6 +41,11 @@ class Exchange:
         """This is to be said next; what was owed before is not waited for any more."""
         self.pending, self._due = request, None
 
+    def forget(self) -> None:
+        """Nothing is owed and nothing will be said any more."""
+        self.begin(None)
+        self._unheard_since = None
+
     @property
     def unsent(self) -> bool:
         """There is something to be said."""
