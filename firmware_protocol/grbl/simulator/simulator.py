@@ -127,8 +127,13 @@ class GrblSimulator:
         return b"" if self.unplugged else self._outbound.arrived(now)
 
     def happen(self, sentence: str, now: float) -> None:
-        """Something happens to the machine: one of `events.SENTENCES`. Raises ValueError for any other."""
+        """Something happens to the machine: one of `events.SENTENCES`.
+
+        Raises ValueError for any other, and for a reset of a machine without power.
+        """
         event = read_event(sentence)
+        if self.unplugged and isinstance(event, HardwareReset | BrownOut):
+            raise ValueError("the machine has no power: plug it in first")
         self._run_until(now)
         match event:
             case HardwareReset(deaf_s):

@@ -195,6 +195,8 @@ def test_hang_brown_out_and_unplug_happen_at_once() -> None:
     assert conversation.ask("?\n") == []
     happens(conversation, "unplug")
     assert conversation.sim.unplugged
+    with pytest.raises(ValueError, match="plug it in first"):
+        happens(conversation, "hardware reset")
     happens(conversation, "plug in")
     assert not conversation.sim.unplugged
     conversation.sim.open(conversation.now)
