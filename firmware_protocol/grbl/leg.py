@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from firmware_protocol.grbl.controller import ARC_TOLERANCE, Controller
 from firmware_protocol.grbl.flow import BARRIER, LONGEST_LINE, SEGMENT_LINES, Flow
-from firmware_protocol.grbl.path import Modal, Path, Spot
+from firmware_protocol.grbl.path import NOWHERE, Modal, Path, Spot
 from firmware_protocol.grbl.replies import Triple
 from firmware_protocol.grbl.rest import Part, from_line, from_spot
 from firmware_protocol.strokes import strokes_before, strokes_touched
@@ -113,13 +113,15 @@ class Leg:
         """What is left of the job, now that the pen is up; None where the place of a cut is not known."""
         if not self.held:
             return self._leg(self._later, self.path.end)
-        if self.held_at is None or not self._spots:
+        lifted = self._state_after(self._lift, Modal(place=self.held_at or NOWHERE))
+        if not self._spots and self.flow.sent:
             return None
-        lifted = self._state_after(self._lift, Modal(place=self.held_at))
-        spot = self._spots[0]
-        if spot.line >= len(self.parts):
+        if not self.flow.sent:
+            left = from_line(self.parts, self.path, 0, lifted=lifted)
+        elif self._spots[0].line < len(self.parts):
+            left = from_spot(self.parts, self.path, self._spots[0], lifted=lifted)
+        else:
             return self._leg(self._later, lifted)
-        left = from_spot(self.parts, self.path, spot, lifted=lifted)
         return self._leg([*left, *(self.tail if self._later else []), *self._later], lifted)
 
     def _leg(self, parts: Sequence[Part], start: Modal) -> Leg:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from firmware_protocol.grbl.replies import Triple
 
 OVERLAP_MM = 0.3
 """So much of the ink before a cut is drawn again: a pen that is lowered begins to write a little late."""
+_PLANE_WORD = re.compile(r"[XY]")
 
 
 class Part(NamedTuple):
@@ -58,9 +60,7 @@ def _from_ink(parts: Sequence[Part], path: Path, spot: Spot, first: int, *, lift
     assert step.move is not None
     at = step.move.at(spot.part)
     lines = [*_back_to(before, lifted, at[:2])]
-    lines += [
-        _with_motion(each) for each in path.steps[first : spot.line] if each.move is None or not _moves_flat(each.move)
-    ]
+    lines += [_with_motion(each) for each in path.steps[first : spot.line] if not _PLANE_WORD.search(each.text.upper())]
     added = [Part(text, parts[spot.line].stroke) for text in (*lines, "G21 G90")]
     rest = Part(_remainder(step, spot.part), parts[spot.line].stroke, parts[spot.line].number)
     modes = [Part(text) for text in _modes(step.after)]
