@@ -134,6 +134,7 @@ def test_a_stop_waits_for_its_answer_lifts_and_ends_the_program() -> None:
     play.wait(10)
     end = play.ended
     assert (end.verdict, end.strokes_possible, end.pen_lifted, end.estimated) == (Verdict.STOPPED, 1, True, True)
+    assert [event.line for event in play.events if isinstance(event, Accepted)] == [0, 1]
 
 
 def test_a_stop_without_answer_is_told_in_time() -> None:

@@ -172,6 +172,14 @@ def test_the_next_job_waits_for_the_next_start() -> None:
     assert play.hear(XON) != b""
 
 
+def test_one_start_is_for_one_job() -> None:
+    play = Play()
+    play.hear(XON)
+    play.start()
+    play.wait(400)
+    assert play.start() == b""
+
+
 def test_seven_bits_have_even_parity_both_ways() -> None:
     play = Play(seven_bit=True)
     play.start([Line("%"), Line("M30")])
