@@ -12,8 +12,8 @@ from firmware_protocol.dobot.job import Job
 from firmware_protocol.dobot.kinematics import Flat
 from firmware_protocol.dobot.packet import Packet
 from firmware_protocol.dobot.queue import Queue
-from firmware_protocol.dobot.scripts import Script, Turn, Wait
 from firmware_protocol.dobot.states import TRANSITIONS, Signal, State
+from firmware_protocol.dobot.steps import Script, Turn, Wait
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.ink import Vector
 from firmware_protocol.session import Event, JobLine, NotReady, Paused, Ready, Verdict
@@ -68,7 +68,8 @@ class Conversation:
         self.lifted = self.position_known = False
         self.first_line: int | None = None
         """Line of the job minus its number in the queue; None while the queue holds no lines."""
-        self.usually_left_over = 0
+        self.usually_left_over: int | None = None
+        """How many more commands 247 counts than are known to wait or run; None until it has been seen."""
         self.doubting = False
         self.late_index: int | None = None
         """What an acknowledgement said that came while it was found out whether it was lost."""

@@ -8,8 +8,8 @@ from firmware_protocol.dobot import sentences
 from firmware_protocol.dobot.conversation import Conversation, Habits
 from firmware_protocol.dobot.kinematics import Flat
 from firmware_protocol.dobot.packet import PacketReader
-from firmware_protocol.dobot.scripts import Turn
 from firmware_protocol.dobot.states import Signal, State
+from firmware_protocol.dobot.steps import Turn
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.session import Event, JobLine
 
