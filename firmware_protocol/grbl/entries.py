@@ -59,6 +59,7 @@ def _homing(talk: Conversation, cause: Cause) -> None:
 
 
 def _placing(talk: Conversation, cause: Cause) -> None:
+    talk.controller.place_mm = None  # until a report tells it in the new coordinates
     talk.flow = Flow((*[MOTORS_ON] * (cause.before is State.RESTED), talk.places), room_bytes=None)
 
 
