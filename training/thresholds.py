@@ -34,7 +34,7 @@ READINGS = {
     "seen": "centroids of the network's corners, lines between neighbouring vertices",
 }
 FIGURES = ("precision", "recall", "edges", "length")
-BINS = np.round(np.arange(-0.1, 1.0001, 0.02), 2)
+BINS = np.round(np.arange(-0.2, 1.0001, 0.02), 2)
 _HEAD = {"alone": "equations alone", "paper": '`graph = "paper"`', "repaired": "repaired"}
 
 
@@ -93,6 +93,7 @@ def _thresholds(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
     for reading in READINGS:
         tau, eta = np.array([row[reading] for row in rows if row[reading]]).T
         found[reading] = {"tau": _spread(tau), "margin": _spread(tau - eta), "eta": _spread(eta)}
+        found[reading]["not_above"] = int((tau <= eta).sum())
     above = [[row["above"][k] / row["pairs"][k] for row in rows if row["pairs"][k]] for k in range(3)]
     ranked = [[row["ranked"][k] for row in rows if row["ranked"][k] is not None] for k in (0, 1)]
     return {
@@ -136,7 +137,7 @@ def tables(found: dict[str, Any]) -> dict[str, str]:
     """Markdown by the name of the mark that it stands under."""
     return {
         "measured": f"`{found['command']}`; n = {found['n']} sketches, {found['lines']:.0f} lines a sketch, "
-        f"{found['short']:.0%} of them no longer than two discs; grid: n = {found['grid_n']}.",
+        f"{found['short']:.0%} of all lines no longer than two discs; grid: n = {found['grid_n']}.",
         "tau-hat": _tau_table(found),
         "separation": _separation_table(found),
         "settings": _settings_table(found),
@@ -146,12 +147,17 @@ def tables(found: dict[str, Any]) -> dict[str, str]:
 
 def _tau_table(found: dict[str, Any]) -> str:
     spans = "mean, sd | 5 % ... 95 %"
-    rows = [f"| reading | beta, px | tau-hat: {spans} | mean eta | tau-hat - mean eta: {spans} |", "|---" * 7 + "|"]
+    rows = [
+        f"| reading | beta, px | tau-hat: {spans} | mean eta | tau-hat - mean eta: {spans} | not above |",
+        "|---" * 8 + "|",
+    ]
     for reading, words in READINGS.items():
         for beta, each in found["thresholds"].items():
             tau, margin, eta = (each[reading][name] for name in ("tau", "margin", "eta"))
             said = [f"{s['mean']:.3f}, {s['sd']:.3f} | {s['low']:.2f} ... {s['high']:.2f}" for s in (tau, margin)]
-            rows.append(f"| {words} | {beta} | {said[0]} | {eta['mean']:.3f} | {said[1]} |")
+            rows.append(
+                f"| {words} | {beta} | {said[0]} | {eta['mean']:.3f} | {said[1]} | {each[reading]['not_above']} |"
+            )
     return "\n".join(rows)
 
 

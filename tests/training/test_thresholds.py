@@ -51,6 +51,11 @@ def test_a_line_drawn_twice_counts_once() -> None:
     assert (len(known.vertices), len(known.lines)) == (3, 2)
 
 
+def test_a_point_that_comes_twice_is_no_segment() -> None:
+    known = known_lines([np.array([[20.0, 100.0], [20.0, 100.0], [180.0, 100.0]])])
+    assert (len(known.lines), known.segments) == (1, 1)
+
+
 def test_strokes_that_stand_still_have_no_line() -> None:
     assert len(known_lines([np.array([[5.0, 5.0], [5.2, 5.2]]), np.array([[9.0, 9.0]])]).lines) == 0
 
