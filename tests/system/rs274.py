@@ -42,7 +42,11 @@ class Rs274:
         (self._work / "tool.tbl").write_text("")
 
     def read(self, text: str) -> list[Canonical]:
-        """The moves of a program. Raises AssertionError with LinuxCNC's words when it complains."""
+        """The straight moves of a program. Raises AssertionError with LinuxCNC's words when it complains."""
+        return list(_moves(self.said(text)))
+
+    def said(self, text: str) -> str:
+        """All canonical calls of a program, as they are printed. Raises AssertionError when it complains."""
         program = self._work / "program.ngc"
         program.write_text(text)
         command = [self._root / "usr/bin/rs274", "-g", "-t", "tool.tbl", "-v", "vars.var", program.name]
@@ -52,7 +56,7 @@ class Rs274:
             command, cwd=self._work, env=environment, capture_output=True, text=True, check=False, timeout=60
         )
         assert done.returncode == 0, f"rs274 complains: {done.stdout[-500:]} {done.stderr[-500:]}"
-        return list(_moves(done.stdout))
+        return done.stdout
 
 
 def _moves(said: str) -> Iterator[Canonical]:

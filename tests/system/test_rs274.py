@@ -21,6 +21,7 @@ from daemon.shapes import Program, Toolpath
 from daemon.toolpath.place import Layout
 from daemon.toolpath.plan import plan_toolpath
 from daemon.vision.segmenter import Segmenter
+from firmware_protocol.emco.blocks import arc
 from tests.drawings.make import SHEETS, Sheet
 from tests.system.rs274 import Canonical, Rs274
 
@@ -122,6 +123,15 @@ def check_pen(moves: list[Canonical], kind: str) -> None:
     for before, move in pairwise(moves):
         if (before.x, before.y) != (move.x, move.y):
             assert (before.z, move.z) == ((down_mm,) * 2 if move.kind == "FEED" else (up_mm,) * 2), kind
+
+
+@pytest.mark.parametrize("clockwise", [True, False])
+def test_an_arc_is_read_as_it_is_meant(clockwise: bool, rs274: Rs274) -> None:
+    """No toolpath holds arcs yet; the block that one would become goes round the right centre the right way."""
+    block = arc((35.0, 27.5), (5.0, 2.5), clockwise=clockwise)
+    said = rs274.said(f"%\nO0001\nG90 G17 G21\nG1 X25.0 Y22.5 F600.0\n{block}\nM30\n%\n")
+    turns = "-1" if clockwise else "1"
+    assert f"ARC_FEED(35.0000, 27.5000, 30.0000, 25.0000, {turns}," in said
 
 
 def test_a_program_that_is_wrong_is_complained_about(rs274: Rs274) -> None:
