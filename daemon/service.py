@@ -18,7 +18,7 @@ from daemon.control import MACHINE_ORDERS, ControlServer, Order
 from daemon.errors import SettingsError
 from daemon.intake.inbox import Inbox, InboxWatch, readable
 from daemon.jobs.desk import Desk
-from daemon.jobs.devices import moves_of, opened
+from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
 from daemon.jobs.journal import Journal
@@ -28,8 +28,8 @@ from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
 from daemon.jobs.sheet import box_origin_mm
-from daemon.machine.open import check_url
 from daemon.program.file import load_program
+from daemon.shapes import Program
 from daemon.status import Diary, StatusBoard
 
 LIFT_WITHIN_S = 25.0
@@ -56,8 +56,7 @@ def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None =
     Raises SettingsError when another daemon works on it or its programs suit no machine here, and DiskTrouble.
     """
     paths, name = settings.paths, settings.machine_name
-    settings.machines[name].check_streamable()
-    check_url(settings.machines[name].url)
+    check(settings.machines[name])
     for folder in (paths.state_dir, paths.inbox, paths.log_dir, paths.runtime_dir):
         make_folder(folder)
     with ExitStack() as at_end:
@@ -94,7 +93,11 @@ def _places(settings: Settings, desk: Desk) -> Places:
         found = desk.find(job) if job else desk.next_to_draw()
         return outline_mm(desk.folders.path(found.id)) if found else box
 
-    return Places(machine.park_mm, frame_mm)
+    def next_program() -> Program:
+        found = desk.next_to_draw()
+        return load_program(desk.folders.path(found.id) / "program.gcode") if found else Program((), 0)
+
+    return Places(machine.park_mm, frame_mm, next_program)
 
 
 @contextmanager

@@ -173,7 +173,7 @@ class DobotMachine(Machine):
     sheet_origin_mm: PairMm = (190.0, -57.0)
     """The sheet's lower left corner, seen from the middle of the base."""
     park_mm: PairMm = (25.0, 57.0)
-    pen: ZPenSettings = ZPenSettings(up_mm=10.0, down_mm=-10.0)
+    pen: ZPenSettings = ZPenSettings(up_mm=10.0)
 
     @model_validator(mode="after")
     def _up_is_above_down(self) -> DobotMachine:

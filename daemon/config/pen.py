@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from daemon.config.section import Positive, Section
 
@@ -35,4 +36,14 @@ class ServoPenSettings(Section):
     """Seconds the servo takes."""
 
 
-PenSettings: TypeAlias = Annotated[ZPenSettings | ServoPenSettings, Field(discriminator="kind")]
+def _kind_of(pen: Any) -> Any:
+    return pen.get("kind", "z") if isinstance(pen, Mapping) else getattr(pen, "kind", None)
+
+
+PenSettings: TypeAlias = Annotated[
+    Annotated[ZPenSettings, Tag("z")] | Annotated[ServoPenSettings, Tag("servo")],
+    Discriminator(
+        _kind_of, custom_error_type="kind", custom_error_message="a pen has kind = 'z' or 'servo': write one of these"
+    ),
+]
+"""By its kind; z where none is said."""

@@ -73,7 +73,7 @@ class Drawing:
             self._connect()
         if self._machine is None:
             return self._without_a_machine()
-        job = self._desk.begin_drawing()
+        job = None if self._rests() else self._desk.begin_drawing()
         if job is None:
             self._listen()
             return IDLE_S
@@ -132,7 +132,10 @@ class Drawing:
         """Do it in this thread, which draws. Raises LinedrawError when it cannot be done."""
         still, closed = order.name in WITHOUT_MOTION, self._machine is None
         try:
-            if closed:
+            if self._machine is not None and self._machine.rests and order.name == "origin":
+                # Motors without current may have been turned by hand: a port that is opened anew begins to count here.
+                self.close()
+            if self._machine is None:
                 self._open(still=still)
             assert self._machine is not None
             words = obey(order, self._machine, self._moves, self._places)
@@ -174,6 +177,14 @@ class Drawing:
             return IDLE_S
         self._desk.let_wait(self._told)
         return max(0.0, self._retry_at_s - self._now())
+
+    def _rests(self) -> bool:
+        """A machine that has forgotten where its pen is while it waited takes no job before a person has told it."""
+        assert self._machine is not None
+        why = self._machine.rests
+        if why:
+            self._desk.let_wait(why)
+        return bool(why)
 
     def _listen(self) -> None:
         assert self._machine is not None

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol, TypeAlias
 
-from daemon.config import GrblMachine
+from daemon.config import DobotMachine, GrblMachine
 from daemon.errors import LinedrawError
 from daemon.jobs.pens import pen_of
 from daemon.program.gcode import lift_lines, lower_lines
 from daemon.shapes import Program, ProgramLine
+from firmware_protocol.dobot.commands import MOVL_XYZ
+from firmware_protocol.dobot.kinematics import Reach
 from firmware_protocol.ink import Vector
 
 PointMm: TypeAlias = tuple[float, float]
@@ -41,7 +43,7 @@ class GrblMoves:
     """In G-code."""
 
     def __init__(self, machine: GrblMachine) -> None:
-        self._machine, self._pen = machine, pen_of(machine)
+        self._machine, self._pen = machine, pen_of(machine.pen)
 
     def home(self) -> Program:
         if self._machine.home == "never":
@@ -66,6 +68,84 @@ class GrblMoves:
                 f"this machine counts from its home, and the pen stands at ({at_mm[0]:g}, {at_mm[1]:g}) mm: "
                 f"write origin_mm = [{at_mm[0]:g}, {at_mm[1]:g}] into [machines.NAME] and start again"
             )
+
+
+class DobotMoves:
+    """In commands for the arm's queue. `at_mm` and points are in mm of the sheet, heights those of the arm."""
+
+    def __init__(self, machine: DobotMachine) -> None:
+        self._machine, self._reach = machine, Reach.between(machine.pen.down_mm, machine.pen.up_mm)
+
+    def home(self) -> Program:
+        return _program("HOME 0")
+
+    def travel(self, points_mm: Sequence[PointMm]) -> Program:
+        return _program(*(self._to(point, self._machine.pen.up_mm) for point in points_mm))
+
+    def jog(self, by_mm: PointMm, at_mm: Vector | None) -> Program:
+        x_mm, y_mm = _known(at_mm)
+        return self.travel([(x_mm + by_mm[0], y_mm + by_mm[1])])
+
+    def pen_up(self, at_mm: Vector | None) -> Program:
+        return self.travel([_known(at_mm)])
+
+    def pen_down(self, seconds: float, at_mm: Vector | None) -> Program:
+        place, pen = _known(at_mm), self._machine.pen
+        return _program(
+            self._to(place, pen.up_mm),
+            self._to(place, pen.down_mm),
+            f"WAIT {round(1000 * seconds)}",
+            self._to(place, pen.up_mm),
+        )
+
+    def check_origin(self, at_mm: Vector) -> None:
+        x_mm, y_mm = self._on_arm((at_mm[0], at_mm[1]))
+        raise LinedrawError(
+            f"an arm knows its own place, and the pen stands at ({x_mm:g}, {y_mm:g}) mm of it: "
+            f"write sheet_origin_mm = [{x_mm:g}, {y_mm:g}] into [machines.NAME] and start again"
+        )
+
+    def _on_arm(self, place: PointMm) -> PointMm:
+        return place[0] + self._machine.sheet_origin_mm[0], place[1] + self._machine.sheet_origin_mm[1]
+
+    def _to(self, place: PointMm, height_mm: float) -> str:
+        target = self._on_arm(place)
+        if self._reach is None or not self._reach.holds(target, target):
+            raise LinedrawError(
+                f"({place[0]:g}, {place[1]:g}) mm of the sheet is out of the arm's reach: choose another place"
+            )
+        return f"PTP {MOVL_XYZ} {target[0]:.3f} {target[1]:.3f} {height_mm:.3f} 0.000"
+
+
+class NoMoves:
+    """Of a machine that takes whole programs only; `why` says what to do instead."""
+
+    def __init__(self, why: str) -> None:
+        self._why = why
+
+    def home(self) -> Program:
+        raise LinedrawError(self._why)
+
+    def travel(self, points_mm: Sequence[PointMm]) -> Program:
+        raise LinedrawError(self._why)
+
+    def jog(self, by_mm: PointMm, at_mm: Vector | None) -> Program:
+        raise LinedrawError(self._why)
+
+    def pen_up(self, at_mm: Vector | None) -> Program:
+        raise LinedrawError(self._why)
+
+    def pen_down(self, seconds: float, at_mm: Vector | None) -> Program:
+        raise LinedrawError(self._why)
+
+    def check_origin(self, at_mm: Vector) -> None:
+        raise LinedrawError(self._why)
+
+
+def _known(at_mm: Vector | None) -> PointMm:
+    if at_mm is None:
+        raise LinedrawError("the machine does not say where its pen stands: home it first")
+    return at_mm[0], at_mm[1]
 
 
 def _program(*lines: str) -> Program:

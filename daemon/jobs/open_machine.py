@@ -43,8 +43,15 @@ class OpenMachine(Protocol):
     def count_from(self, corner_mm: tuple[float, float]) -> None:
         """X0 Y0 of every program from now on lies here, until the port is closed."""
 
-    def check(self) -> Sequence[str]:
-        """What the machine says of itself, and what a drawing would want otherwise: lines for a person."""
+    @property
+    def rests(self) -> str:
+        """Why no job can be begun until the machine is homed or gets an origin; "" when one can."""
+
+    def home(self, program: Program) -> Ended:
+        """Find the machine's home, by this program where the session cannot do it."""
+
+    def check(self, program: Program) -> Sequence[str]:
+        """What the machine says of itself, and what this program would want otherwise: lines for a person."""
 
     def lift(self) -> bool:
         """Raise the pen where it stands. False when it cannot be known to be up."""

@@ -14,7 +14,7 @@ from daemon.errors import LinedrawError, MachineFault
 from daemon.jobs.moves import Moves, PointMm
 from daemon.jobs.open_machine import OpenMachine
 from daemon.shapes import Program
-from firmware_protocol.session import Verdict
+from firmware_protocol.session import Ended, Verdict
 
 OrderName: TypeAlias = Literal["check", "home", "origin", "park", "frame", "pen up", "pen down", "jog"]
 ORDER_NAMES: tuple[OrderName, ...] = get_args(OrderName)
@@ -35,19 +35,24 @@ class MachineOrder:
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the orders lead: the park position, and the corners of a job's drawing ("": of the next one)."""
+    """Where the orders lead: the park position, the corners of a job's drawing ("": of the next one), and the program
+    that comes next (one without lines where none does).
+    """
 
     park_mm: PointMm
     frame_mm: Callable[[str], Sequence[PointMm]]
+    next_program: Callable[[], Program]
 
 
 def obey(order: MachineOrder, machine: OpenMachine, moves: Moves, places: Places) -> str:
     """Do it, and say what was done. Raises LinedrawError where it cannot be done, MachineFault where it failed."""
     match order.name:
         case "check":
-            return "\n".join(machine.check())
+            return "\n".join(machine.check(places.next_program()))
         case "origin":
             return _origin(machine, moves)
+        case "home":
+            return _told(machine.home(moves.home()), "the machine is homed")
         case _:
             program, done = _motion(order, machine, moves, places)
             return _moved(machine, program, done)
@@ -65,8 +70,6 @@ def _origin(machine: OpenMachine, moves: Moves) -> str:
 def _motion(order: MachineOrder, machine: OpenMachine, moves: Moves, places: Places) -> tuple[Program, str]:
     """What is sent, and what has been done then."""
     match order.name:
-        case "home":
-            return moves.home(), "the machine is homed"
         case "park":
             return moves.travel([places.park_mm]), "the pen is parked"
         case "frame":
@@ -84,6 +87,10 @@ def _motion(order: MachineOrder, machine: OpenMachine, moves: Moves, places: Pla
 def _moved(machine: OpenMachine, program: Program, done: str) -> str:
     ended = machine.draw(program)
     machine.take_ink()
+    return _told(ended, done)
+
+
+def _told(ended: Ended, done: str) -> str:
     if ended.verdict is Verdict.FINISHED:
         return done
     kept = ended.position_known and ended.verdict in (Verdict.STOPPED, Verdict.REJECTED)

@@ -72,7 +72,7 @@ def plan_picture(
     with stages("toolpath"):
         toolpath = _toolpath(drawing, page, settings, settings.machines[machine])
     with stages("program"):
-        program = program_of(toolpath, settings.machines[machine], name)
+        program = program_of(toolpath, settings.machines[machine], folder.name)
         estimated_s = seconds_of(program, settings.machines[machine])
     with stages("report"):
         _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, (page, segmentation, graph, on_page))

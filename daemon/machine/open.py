@@ -9,12 +9,13 @@ from typing import Generic, TypeAlias, TypeVar
 from daemon.errors import LinedrawError
 from daemon.machine.link import Link
 from daemon.machine.serial_port import Framing, open_serial
-from daemon.machine.simulated import SimulatedTransport, open_simulated
+from daemon.machine.simulated import SimulatedTransport, way_to
 from daemon.machine.transport import Transport
 from daemon.shapes import Program, ProgramLine
 from firmware_protocol.errors import ProtocolError
-from firmware_protocol.ink import PenRule, Polyline, Vector
-from firmware_protocol.session import Ended, Event, Ready, Session, Status
+from firmware_protocol.ink import Polyline, Vector
+from firmware_protocol.session import Ended, Event, Ready, Session, Status, Verdict
+from firmware_protocol.simulator import Simulator
 
 LISTEN_S = 0.05
 """Long enough for an idle controller's answer to `?`, short enough for a job that waits."""
@@ -34,15 +35,19 @@ class Conversation(Generic[S]):
     have been drawn, in s from its start, as far as the session knows its machine; raises ProtocolError or ValueError
     for what the model does not know. check: what the machine says of itself, in lines for a person. sheet_mm: where the
     simulated machine's ink has the sheet's corner. lift: raises the pen where it stands; None where the machine cannot
-    be asked to. moved: a line of a program, displaced by x and y in mm; None where programs cannot be displaced.
+    be asked to. moved: a line of a program, displaced by x and y in mm; None where programs cannot be displaced. home:
+    begins homing between two jobs; None where a program does that. rests: why no job can be begun until the machine is
+    homed or gets an origin; "" when one can.
     """
 
     session: Callable[[float], S]
     times: Callable[[S, Sequence[str]], Sequence[float]]
-    check: Callable[[S], Sequence[str]]
+    check: Callable[[S, Program], Sequence[str]]
     sheet_mm: PlaceMm = (0.0, 0.0)
     lift: Program | None = None
     moved: Callable[[str, PlaceMm], str] | None = None
+    home: Callable[[S, float], None] | None = None
+    rests: Callable[[S], str] = lambda session: ""
 
 
 class OpenedMachine(Generic[S]):
@@ -114,11 +119,24 @@ class OpenedMachine(Generic[S]):
             raise LinedrawError(f"{self.name} has its origin set at the control: set it there")
         self._corner_mm = corner_mm
 
-    def check(self) -> Sequence[str]:
-        """What the machine says of itself."""
+    @property
+    def rests(self) -> str:
+        """Why no job can be begun, in a sentence; "" when one can."""
+        return self._conversation.rests(self.session)
+
+    def home(self, program: Program) -> Ended:
+        """Find the machine's home, by the session itself or by this program. Raises NoMachine and MachineFault."""
+        if self._conversation.home is None:
+            return self.draw(program)
+        self._conversation.home(self.session, self._transport.now())
+        self._link.connect()
+        return Ended(Verdict.FINISHED, 0, 0, position_known=True, pen_lifted=True, why="the machine is homed")
+
+    def check(self, program: Program) -> Sequence[str]:
+        """What the machine says of itself, and what `program` would want otherwise. Raises MachineFault."""
         at_mm = self.position_mm()
         place = "not said" if at_mm is None else "X{:.3f} Y{:.3f} Z{:.3f} mm".format(*at_mm)
-        return [f"port: {self.name}", f"pen at: {place}", *self._conversation.check(self.session)]
+        return [f"port: {self.name}", f"pen at: {place}", *self._conversation.check(self.session, program)]
 
     def lift(self) -> bool:
         """Raise the pen where it stands. False when it cannot be known to be up. Raises MachineFault."""
@@ -159,24 +177,13 @@ def open_machine(
     conversation: Conversation[S],
     *,
     framing: Framing,
-    touches: PenRule | None,
+    simulate: Callable[[], Simulator],
     heard: Callable[[Event], None],
 ) -> OpenedMachine[S]:
     """Open the port and prepare the conversation; nothing has been said yet.
 
-    url: serial://, tcp:// or sim://. touches: when the pen of a simulated GRBL is on the sheet. heard: is told every
-    event, in the drawing thread. Raises NoMachine, and SettingsError as `check_url` does.
+    url: serial://, tcp:// or sim://. simulate: makes the simulated machine of a sim://. heard: is told every event, in
+    the drawing thread. Raises NoMachine, and SettingsError for a simulated machine that there is not.
     """
-    return OpenedMachine(_transport(url, framing, touches), conversation, heard=heard)
-
-
-def check_url(url: str) -> None:
-    """Raises SettingsError for a simulated machine that there is not; ports are looked for when they are opened."""
-    if url.startswith("sim://"):
-        open_simulated(url).close()
-
-
-def _transport(url: str, framing: Framing, touches: PenRule | None) -> Transport:
-    if url.startswith("sim://"):
-        return open_simulated(url, pen=touches)
-    return open_serial(url, framing=framing)
+    transport = way_to(simulate(), url) if url.startswith("sim://") else open_serial(url, framing=framing)
+    return OpenedMachine(transport, conversation, heard=heard)

@@ -33,6 +33,10 @@ GRBL_IDS = frozenset(
 of them too, so an id makes a candidate, never a machine."""
 
 
+DOBOT_IDS = frozenset({(0x10C4, 0xEA60), (0x1A86, 0x7523), (0x1A86, 0x55D4)})
+"""CP210x, CH340 and CH9102, as the drivers of the Dobot Magician look for them."""
+
+
 def candidates(ports: Sequence[Adapter]) -> tuple[Adapter, ...]:
     """The adapters that may belong to a GRBL controller."""
     return tuple(port for port in ports if (port.vid, port.pid) in GRBL_IDS)
@@ -58,6 +62,17 @@ def find_grbl(
     if len(answering) == 1:
         return answering[0].path
     raise NoMachine(_which(found, answering))
+
+
+def find_dobot(ports: Sequence[Adapter]) -> str:
+    """The path of the one port that a Dobot may be on; none is opened to ask. Raises NoMachine."""
+    found = [port for port in ports if (port.vid, port.pid) in DOBOT_IDS]
+    if len(found) == 1:
+        return found[0].path
+    if not found:
+        raise NoMachine("no serial adapter of a Dobot is plugged in: plug it in, or name its port")
+    listed = ", ".join(f"{port.path} (USB {port.place})" for port in found)
+    raise NoMachine(f"a Dobot may be on any of {listed}: name the port to use")
 
 
 def is_grbl(transport: Transport) -> bool:

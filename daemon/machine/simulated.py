@@ -16,6 +16,7 @@ from firmware_protocol.grbl.simulator.faults import (
     Hang,
     HardLimit,
     LoseOk,
+    SlowUsb,
     Timed,
     Unplug,
 )
@@ -26,8 +27,6 @@ from firmware_protocol.simulator import Simulator
 _AT: Mapping[str, type[Timed]] = {"hang": Hang, "brownout": BrownOut, "limit": HardLimit, "unplug": Unplug}
 _NUMBERED: Mapping[str, type[DropByte | FlipByte | LoseOk]] = {"drop": DropByte, "flip": FlipByte, "lose_ok": LoseOk}
 _OTHER = ("speed", "boot_s", "pen_z", "pen_s", "switches")
-OTHERS: Mapping[str, Callable[[Mapping[str, str]], Simulator]] = {}
-"""Simulated machines besides GRBL, by the name in `sim://NAME`."""
 _EXAMPLE = "sim://grbl?speed=1&pen_z=0&110=3000&hang=2.5"
 
 
@@ -101,17 +100,16 @@ class SimulatedTransport:
 def open_simulated(
     url: str, *, settings: Mapping[int, float] | None = None, pen: PenRule | None = None, faults: Sequence[Fault] = ()
 ) -> SimulatedTransport:
-    """Switch the machine that `url` describes on and open the way to it; `speed` in the query is its speed.
+    """Switch the machine that `simulator_of` describes on and open the way to it; `speed` in the query is its speed.
 
-    settings, pen, faults: of a simulated GRBL, as `simulator_of` takes them.
     Raises SettingsError for a URL that cannot be understood.
     """
-    parts = urlsplit(url)
-    speed = dict(parse_qsl(parts.query)).get("speed", "0")
-    if parts.netloc in OTHERS:
-        simulator = other_simulator(url)
-    else:
-        simulator = simulator_of(url, settings=settings, pen=pen, faults=faults)
+    return way_to(simulator_of(url, settings=settings, pen=pen, faults=faults), url)
+
+
+def way_to(simulator: Simulator, url: str) -> SimulatedTransport:
+    """Open the way to a simulated machine; `speed` in the query of `url` is its speed. Raises SettingsError."""
+    speed = dict(parse_qsl(urlsplit(url).query)).get("speed", "0")
     try:
         return SimulatedTransport(simulator, speed=float(speed), name=url)
     except ValueError as error:
@@ -120,14 +118,14 @@ def open_simulated(
         ) from error
 
 
-def other_simulator(url: str) -> Simulator:
-    """The simulated machine of another kind than GRBL. Raises SettingsError for options that it does not know."""
-    parts = urlsplit(url)
-    options = {key: value for key, value in parse_qsl(parts.query, keep_blank_values=True) if key != "speed"}
+def simulator_by(simulate: Callable[[Mapping[str, str]], Simulator], url: str) -> Simulator:
+    """The simulated machine that `simulate` makes of the options in a URL. Raises SettingsError for a wrong one."""
+    options = dict(parse_qsl(urlsplit(url).query, keep_blank_values=True))
+    options.pop("speed", None)
     try:
-        return OTHERS[parts.netloc](options)
+        return simulate(options)
     except ValueError as error:
-        raise SettingsError(f"{url}: {error}: correct the options behind the question mark") from error
+        raise SettingsError(f"{url}: {error}: correct what stands behind the question mark") from error
 
 
 def simulator_of(
@@ -137,8 +135,8 @@ def simulator_of(
 
     The query may hold `speed`, `boot_s`, the pen (`pen_z` height in mm, or `pen_s=DOWN:UP` values of S), the homing
     `switches=X:Y:Z` in mm from where the pen stands first, `$` settings by number, and faults: `hang`, `brownout`,
-    `limit` and `unplug` in seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0.
-    What it says goes before the arguments.
+    `limit` and `unplug` in seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0;
+    `usb_ms` of a slow converter. What it says goes before the arguments.
     Raises SettingsError for anything else.
     """
     parts = urlsplit(url)
@@ -163,6 +161,8 @@ def simulator_of(
 def _fault(key: str, value: str) -> Fault:
     if key in _NUMBERED:
         return _NUMBERED[key](int(value))
+    if key == "usb_ms":
+        return SlowUsb(float(value) / 1000)
     if key not in _AT:
         raise ValueError(f"there is no option {key}")
     if value.startswith("@"):

@@ -23,6 +23,7 @@ def settings(text: str, folder: Path, *, device: str | None = None, port: str | 
         ("[plannning]\nthreads = 1", "plannning is unknown: did you mean planning?"),
         ("[planning]\ntime_limits = 3", "[planning] time_limits is unknown: did you mean time_limit_s?"),
         ("[machines.left.pen]\nkind = 'z'\nupmm = 3", "upmm is unknown: did you mean up_mm?"),
+        ("[machines.left.pen]\nkind = 'brush'", "[machines.left] pen: a pen has kind = 'z' or 'servo'"),
         ("[machines.left.pen]\nkind = 'servo'\nup = 3", "up is unknown: did you mean up_s?"),
         ("[paths]\nstate = 'x'", "[paths] state is unknown: did you mean state_dir?"),
         ("[machines.left]\nqqq = 1", "[machines.left] qqq is unknown: known are device, url"),

@@ -17,7 +17,7 @@ import pytest
 from daemon.config import GrblMachine, Options, ServoPenSettings, Settings, ZPenSettings, load_settings
 from daemon.control import Order, give_order
 from daemon.errors import SettingsError
-from daemon.jobs.devices import touches
+from daemon.jobs.grbl import touches
 from daemon.jobs.journal import Job
 from daemon.jobs.states import State
 from daemon.service import Parts, Service, parts_of
@@ -63,8 +63,8 @@ class Daemon:
 
 
 @contextmanager
-def running(settings: Settings) -> Iterator[Daemon]:
-    with parts_of(settings, planner=PLANNER) as parts:
+def running(settings: Settings, *, planner: str | None = PLANNER) -> Iterator[Daemon]:
+    with parts_of(settings, planner=planner) as parts:
         service = Service(settings, parts)
         thread = Thread(target=service.run)
         thread.start()

@@ -44,12 +44,13 @@ class InstantMachine:
     ink: InkMm | None = None
     heard: Callable[[Event], None] = lambda event: None
     still: bool = False
+    resting: str = ""
     lifted: int = 0
     programs: list[list[str]] = field(default_factory=list)
     corner_mm: tuple[float, float] = (0.0, 0.0)
 
     def open(self, heard: Callable[[Event], None], still: bool) -> InstantMachine:
-        self.still = still
+        self.still, self.resting = still, ""
         if self.missing:
             raise self.missing
         self.opened += 1
@@ -88,7 +89,14 @@ class InstantMachine:
     def count_from(self, corner_mm: tuple[float, float]) -> None:
         self.corner_mm = corner_mm
 
-    def check(self) -> Sequence[str]:
+    @property
+    def rests(self) -> str:
+        return self.resting
+
+    def home(self, program: Program) -> Ended:
+        return self.draw(program)
+
+    def check(self, program: Program) -> Sequence[str]:
         return ["port: instant", "firmware: Instant 1"]
 
     def lift(self) -> bool:
@@ -136,7 +144,7 @@ class Bench:
             load=self._load,
             measure=lambda folder: self.pool.measure(folder, "plotter"),
             moves=GrblMoves(GrblMachine()),
-            places=Places((1.0, 2.0), lambda job: rectangle_mm((0.0, 0.0), (10.0, 20.0))),
+            places=Places((1.0, 2.0), lambda job: rectangle_mm((0.0, 0.0), (10.0, 20.0)), lambda: Program((), 0)),
             now=lambda: self.now_s,
         )
         self.runner = Runner(self.desk, self.pool, self.planning, self.drawing)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from daemon.config import GrblMachine
-from daemon.jobs.devices import _moved, program_of, seconds_of
+from daemon.jobs.devices import program_of, seconds_of
+from daemon.jobs.grbl import moved
 from tests.daemon.program.examples import TOOLPATH
 
 
@@ -16,7 +17,7 @@ def test_a_machine_that_homes_before_each_job_has_it_in_its_program() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "moved"),
+    ("line", "elsewhere"),
     [
         ("G0 X1.000 Y-2.500", "G0 X11.000 Y-7.500"),
         ("X3 Y4", "X13.000 Y-1.000"),
@@ -25,5 +26,5 @@ def test_a_machine_that_homes_before_each_job_has_it_in_its_program() -> None:
         ("M3 S650", "M3 S650"),
     ],
 )
-def test_a_displaced_line_has_other_places_and_nothing_else(line: str, moved: str) -> None:
-    assert _moved(line, (10.0, -5.0)) == moved
+def test_a_displaced_line_has_other_places_and_nothing_else(line: str, elsewhere: str) -> None:
+    assert moved(line, (10.0, -5.0)) == elsewhere

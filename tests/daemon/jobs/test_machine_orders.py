@@ -121,6 +121,18 @@ def test_pause_and_resume_need_a_drawing(bench: Bench) -> None:
     assert bench.states() == ["done"]
 
 
+def test_a_machine_that_rests_takes_no_job_until_it_has_an_origin(bench: Bench) -> None:
+    bench.drawing.turn()
+    bench.machine.resting = "the motors are off: home the machine"
+    bench.planned()
+    bench.drawing.turn()
+    assert (bench.states(), bench.words()) == (["waiting"], "the motors are off: home the machine")
+    order(bench, "origin")
+    assert bench.machine.closed == 1
+    bench.drawing.turn()
+    assert bench.states() == ["done"]
+
+
 def test_a_homed_machine_has_its_origin_in_the_settings() -> None:
     homed = GrblMoves(GrblMachine(home="start"))
     assert [line.text for line in homed.home().lines] == ["$H"]
