@@ -59,13 +59,13 @@ class Bench:
         end = self.now + within_s
         while not done():
             assert self.now < end, f"still {self.session.state.value} after {within_s} s"
-            self._turn(end)
+            self.turn(end)
 
     def wait(self, seconds: float) -> None:
         """Let the time pass."""
         end = self.now + seconds
         while self.now < end:
-            self._turn(end)
+            self.turn(end)
 
     def ready(self) -> Bench:
         """The arm has introduced itself."""
@@ -109,8 +109,9 @@ class Bench:
         while (event := self.sim.next_time()) is not None:
             self.sim.advance(event)
 
-    def _turn(self, end: float) -> None:
-        self._act()
+    def turn(self, end: float) -> None:
+        """To the next moment at which anything happens, `end` at the latest."""
+        self.act()
         times = [at for at in (self.sim.next_time(), self.session.deadline()) if at is not None]
         self.now = min(end, max(self.now, min(times, default=end)) + self.late_s)
         if self.sim.unplugged:
@@ -119,9 +120,10 @@ class Bench:
             return
         self._tell(self.session.receive(self.sim.advance(self.now), self.now))
         self._tell(self.session.expire(self.now))
-        self._act()
+        self.act()
 
-    def _act(self) -> None:
+    def act(self) -> None:
+        """Say what the session has to say."""
         data = self.session.data_to_send(self.now)
         if data and not self.sim.unplugged:
             self.sent.append((self.now, data))

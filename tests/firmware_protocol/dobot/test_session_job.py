@@ -73,7 +73,7 @@ def test_the_queue_is_never_filled_to_the_brim_and_never_empty_in_a_stroke() -> 
     most = 0
     while not bench.over:
         most = max(most, bench.sim.arm.build.depth - bench.sim.arm.left)
-        bench._turn(bench.now + 1)
+        bench.turn(bench.now + 1)
     assert most == 30
     assert bench.sim.arm.waited_on_paper_s == 0.0
 

@@ -75,7 +75,7 @@ def test_nobody_there_is_said_in_time() -> None:
 
 def test_something_else_that_babbles_is_no_arm() -> None:
     bench = Bench(arm={"faults": [Hang(at_s=0.0)]})
-    bench._act()
+    bench.act()
     bench.session.receive(b"Grbl 1.1h ['$' for help]\r\n", 0.1)
     bench.ready()
     assert "no Dobot Magician" in bench.all_of(NotReady)[0].why
