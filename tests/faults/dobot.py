@@ -27,6 +27,8 @@ from tests.faults.row import Row, outcome_of
 from tests.firmware_protocol.dobot.bench import Bench, Line, strokes
 
 STROKES, LINES_A_STROKE = 12, 13
+POLL_S = 0.1
+"""The same question is asked again only later than this where it was not answered."""
 REPLY_S = 0.005
 """So long after a request its reply has passed the wire, if there is one."""
 _HARMLESS = "none: nothing of the drawing was lost"
@@ -103,7 +105,7 @@ def _asked_in_vain_s(bench: Bench, end: Ended) -> float:
     """When what had to be sent twice was sent first: a command, or any question where nothing is answered."""
     commands = end.verdict is Verdict.REJECTED
     sent = [(at, data) for at, data in bench.sent if len(data) == CP_BYTES or not commands]
-    return next(at for (at, data), (_, again) in pairwise(sent) if data == again)
+    return next(at for (at, data), (later, again) in pairwise(sent) if data == again and later > at + POLL_S)
 
 
 def _lines() -> list[Line]:
