@@ -59,7 +59,7 @@ def show() -> None:
 def program(lines: int = LINES) -> list[ProgramLine]:
     """Turns of a circle in moves of 0.05 mm."""
     angles = [step * 0.05 / 8 for step in range(lines - 1)]
-    moves = [f"G1X{12 + 8 * cos(angle):.3f}Y{12 + 8 * sin(angle):.3f}" for angle in angles]
+    moves = [f"G1X{15 + 8 * cos(angle):.3f}Y{15 + 8 * sin(angle):.3f}" for angle in angles]
     return [ProgramLine("G90G21F30000"), *map(ProgramLine, moves)]
 
 

@@ -12,6 +12,8 @@ from firmware_protocol.grbl.simulator.realtime import Routine, execute_realtime,
 LOCKED = 9
 LINE_S = 0.0002
 CHARACTER_S = 0.000065
+GCODE_S = 0.00036
+"""Checks of a line of G-code. Measured: 612 lines a second in check mode, 243 when each answer is waited for."""
 _BOOT_S = 0.001
 
 
@@ -61,7 +63,8 @@ def _execute(chip: Chip, raw: bytes) -> Answer:
         line = clean_line(raw)
     except GcodeError as error:
         return error.code
-    yield chip.now + slowed(chip, LINE_S + CHARACTER_S * len(line))
+    gcode_s = GCODE_S if line and line[0] != "$" else 0.0
+    yield chip.now + slowed(chip, LINE_S + CHARACTER_S * len(line) + gcode_s)
     if not line:
         return 0
     if line[0] == "$":

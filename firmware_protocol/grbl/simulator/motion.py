@@ -21,7 +21,7 @@ from firmware_protocol.grbl.simulator.lookahead import Vector
 from firmware_protocol.grbl.simulator.planner import DWELL_STEP_S
 from firmware_protocol.grbl.simulator.realtime import Routine, execute_realtime, set_overrides, start_cycle, synchronize
 
-PLAN_S = 0.00068
+PLAN_S = 0.00032
 MOVING_FACTOR = 1.3
 """How much longer everything takes while the step interrupts run."""
 
