@@ -30,7 +30,7 @@ WHOLE_PX = 285
 """Pages up to this side are read whole."""
 BATCH = 4
 _BLANK = 64
-"""A tile without a pixel this dark is blank paper (of 255)."""
+"""Of 255: a pixel must be this much darker than white, or it is blank paper."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Segmenter:
         maps = np.zeros((3, height, width), np.float32)
         maps[0] = 1.0
         size_px = self._manifest.window_px(max(width, height))
-        inked = [t for t in tiles(width, height, size_px=size_px, margin_px=MARGIN_PX) if has_ink(page.grey, t)]
+        inked = list(tiles(page.grey < 255 - _BLANK, size_px=size_px, margin_px=MARGIN_PX))
         for first in range(0, len(inked), BATCH):
             batch = inked[first : first + BATCH]
             answers = softmax(self.logits(np.stack([cut(page.grey, t, size_px) for t in batch])))
@@ -102,11 +102,6 @@ def open_model(path: Path, *, threads: int) -> onnxruntime.InferenceSession:
     options.inter_op_num_threads = 1
     options.log_severity_level = 3
     return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
-
-
-def has_ink(grey: Grey, tile: Tile) -> bool:
-    core = grey[tile.core_top : tile.core_bottom, tile.core_left : tile.core_right]
-    return int(core.min()) < 255 - _BLANK
 
 
 def cut(grey: Grey, tile: Tile, size_px: int) -> Map:
