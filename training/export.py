@@ -33,7 +33,7 @@ from torch import nn
 from training import quickdraw
 from training.canvas import Canvases
 from training.measure import CLASSES
-from training.network import MirrorUNet, Shape, level_sizes
+from training.network import MirrorUNet, Shape, legal_size_px, level_sizes
 from training.render import CANVAS_PX
 
 OPSET = 18
@@ -58,9 +58,9 @@ class Graph:
         self.constants.append(numpy_helper.from_array(np.ascontiguousarray(value), name))
         return name
 
-    def conv(self, x: str, kernel: Array, bias: Array, *, pad: int = 0, stride: int = 1) -> str:
+    def conv(self, x: str, kernel: Array, bias: Array, *, pads: Sequence[int] = (0, 0, 0, 0), stride: int = 1) -> str:
         inputs = [x, self.constant(kernel), self.constant(bias)]
-        return self.node("Conv", inputs, pads=[pad] * 4, strides=[stride] * 2, kernel_shape=kernel.shape[2:])
+        return self.node("Conv", inputs, pads=pads, strides=[stride] * 2, kernel_shape=kernel.shape[2:])
 
     def layer(self, x: str, convolution: nn.Module, norm: nn.Module | None) -> str:
         """One convolution of either kind, its normalisation folded in."""
@@ -69,8 +69,21 @@ class Graph:
             return self.conv(x, kernel, bias, stride=convolution.stride[0])
         assert isinstance(convolution, nn.ConvTranspose2d)
         if convolution.stride[0] == 1:
-            return self.conv(x, kernel[:, :, ::-1, ::-1], bias, pad=kernel.shape[2] - 1)
-        x = self.conv(x, spread(kernel), np.repeat(bias, 4), pad=1)
+            return self.conv(x, kernel[:, :, ::-1, ::-1], bias, pads=[kernel.shape[2] - 1] * 4)
+        return self.unfolded(self.conv(x, spread(kernel), np.repeat(bias, 4), pads=[1] * 4))
+
+    def blocks_of_four(self, x: str, convolution: nn.ConvTranspose2d) -> str:
+        """A stride-1 transposed convolution to few channels, whose answer has odd sides.
+
+        Four neighbours are computed as the channels of one: matrix products three columns wide leave vector units idle.
+        """
+        kernel, bias = folded(convolution, None)
+        wide, side = four_at_once(kernel[:, :, ::-1, ::-1]), kernel.shape[2]
+        x = self.conv(x, wide, np.repeat(bias, 4), pads=[side - 1, side - 1, side, side], stride=2)
+        return self.unfolded(x)
+
+    def unfolded(self, x: str) -> str:
+        """Four channels become a block of 2 x 2 px; the last row and column are one too many."""
         x = self.node("DepthToSpace", [x], blocksize=2, mode="CRD")
         ends = [self.constant(np.array(v, np.int64)) for v in ([0, 0], [-1, -1], [2, 3])]
         return self.node("Slice", [x, *ends])
@@ -110,6 +123,15 @@ def spread(kernel: Array) -> Array:
     return wide.reshape(-1, *wide.shape[3:])
 
 
+def four_at_once(kernel: Array) -> Array:
+    """A stride-1 kernel (out, in, k, k) as a stride-2 one (4 out, in, k + 1, k + 1): an answer for each px of 2 x 2."""
+    out, entering, side, _ = kernel.shape
+    wide = np.zeros((out, 2, 2, entering, side + 1, side + 1), np.float32)
+    for row, column in np.ndindex(2, 2):
+        wide[:, row, column, :, row : row + side, column : column + side] = kernel
+    return wide.reshape(4 * out, *wide.shape[3:])
+
+
 def build(net: MirrorUNet) -> onnx.ModelProto:
     """The all-convolution float model. ink (N, 1, H, W) -> logits (N, 3, H, W), float32."""
     net.eval()
@@ -123,7 +145,11 @@ def build(net: MirrorUNet) -> onnx.ModelProto:
     for up, mirror in zip(reversed(net.up), reversed(net.mirrors), strict=True):
         x = graph.sequence(graph.sequence(x, list(mirror)), list(up))
         x = graph.node("Concat", [skips.pop(), x], axis=1)
-    graph.layer(graph.sequence(x, list(net.last)), net.logits, None)
+    x = graph.sequence(x, list(net.last))
+    if legal_size_px(net.shape, CANVAS_PX) % 2:
+        graph.blocks_of_four(x, net.logits)
+    else:
+        graph.layer(x, net.logits, None)
     graph.nodes[-1].output[0] = "logits"
     sides = [
         helper.make_tensor_value_info(n, TensorProto.FLOAT, ["pages", c, "height", "width"])
