@@ -41,3 +41,14 @@ def test_every_network_of_the_table_is_trained_and_printed(
     assert all(0.0 < each["test"]["test_mean"] < 100.0 and each["images"] == 8 for each in results.values())
     assert "| (9 3 3 2) | XENT | 75.09 |" in capsys.readouterr().out
     assert (tmp_path / "iou.png").stat().st_size > 1000
+    readme = (tmp_path / "README.md").read_text()
+    assert "| (9 3 3 2) | XENT | 75.09 |" in readme
+    assert "of 1 pairs of networks" in readme
+
+
+def test_pairs_that_stand_in_another_order_are_named() -> None:
+    figures = dict(zip(compare.TABLE, (95.0, 91.0, 92.0, 96.0, 93.0), strict=True))
+    results = {compare.key_of(entry, False): {"test": {"test_mean": iou}} for entry, iou in figures.items()}
+    said = compare.order(results)
+    assert "6 of 10 pairs" in said
+    assert "(7 3 4 3) mwx (95.00) and (9 3 3 2) xent (96.00)" in said
