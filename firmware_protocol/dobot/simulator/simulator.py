@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 
 from firmware_protocol.dobot.kinematics import Flat
 from firmware_protocol.dobot.packet import Packet, PacketReader
@@ -28,6 +29,12 @@ from firmware_protocol.ink import PenRule, Polyline, Vector
 _NEVER = float("inf")
 BOOT_S = 1.5
 """For so long an arm that restarts hears nothing."""
+_EVENTS: Mapping[str, type[ClosePort | PowerCut | Hang | StopQueue]] = {
+    "unplug": ClosePort,
+    "power cut": PowerCut,
+    "hang": Hang,
+    "stop queue": StopQueue,
+}
 _TIMED = (ClosePort, PowerCut, Hang, StopQueue, RaiseAlarm)
 
 
@@ -110,6 +117,19 @@ class DobotSimulator:
         """When something will next change or be said; None: nothing more until something is received."""
         soonest = min(self._next_event(), _NEVER if self.unplugged else self._out.next_s())
         return None if soonest == _NEVER else soonest
+
+    def happen(self, sentence: str, now: float) -> None:
+        """See `Eventful.happen`; "plug in" ends "unplug"."""
+        self._run_until(now)
+        what = sentence.strip().lower()
+        if (code := re.fullmatch(r"alarm (?:0x)?([0-7][0-9a-f])", what)) is not None:
+            self._happen(RaiseAlarm(at_s=now, code=int(code[1], 16)))
+        elif what in _EVENTS:
+            self._happen(_EVENTS[what](at_s=now))
+        elif what == "plug in":
+            self.unplugged = False
+        else:
+            raise ValueError(f"{sentence!r} does not happen to an arm: {', '.join(_EVENTS)}, plug in, alarm 50 do")
 
     def _run_until(self, now: float) -> None:
         while (event := self._next_event()) <= now:
