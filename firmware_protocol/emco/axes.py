@@ -39,7 +39,9 @@ class Axes:
         return bool(self._moves)
 
     def add(self, moves: Sequence[Move], now: float) -> None:
-        """Take in the moves of a block; moves without length are none."""
+        """Take in the moves of a block; moves without length are none. Axes that stand begin from rest."""
+        if not self._moves:
+            self._clock = Clock(acceleration_mm_s2=self._acceleration)
         timed = [(move, seconds) for move in moves if (seconds := self._clock.seconds(move)) > 0]
         if not timed:
             return
@@ -68,7 +70,6 @@ class Axes:
         self._ink.cut()
         self._moves.clear()
         self._blocks = 0
-        self._clock = Clock(acceleration_mm_s2=self._acceleration)
 
     def position_mm(self, now: float) -> Vector:
         return self._part(now).end if self._moves else self._position_mm

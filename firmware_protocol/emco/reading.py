@@ -91,7 +91,7 @@ class Reading:
             if block is None:
                 break
             self._take(block, now)
-        if not self._stalled and self.receiver.drained():
+        if self.receiver.drained():
             self._say(XON, now)
 
     def _take(self, raw: bytes, now: float) -> None:

@@ -180,6 +180,16 @@ def test_behind_m30_the_next_program_may_come() -> None:
     assert (simulator.position_mm[0], simulator.screen, simulator.unread) == (2.0, "", 0)
 
 
+def test_it_asks_for_the_next_program_only_when_the_last_motion_has_ended() -> None:
+    simulator = opened(Setup(repeat_xon_s=None))
+    assert simulator.advance(0.5) == XON
+    simulator.receive(HEAD + b"G1 X20.0 F600.0\n" + TAIL, 0.5)
+    assert simulator.advance(2.0) == b""
+    assert simulator.moving
+    assert simulator.advance(4.0) == XON
+    assert simulator.position_mm[0] == 20.0
+
+
 @given(st.lists(st.binary(max_size=40) | st.floats(0, 20), max_size=12), st.sampled_from(["xonxoff", "blocks"]))
 def test_noise_does_no_harm_and_time_goes_on(course: list[bytes | float], link: str) -> None:
     simulator = simulator_from({"link": link, "format": "7E1", "software_parity": "1"})
