@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
+from daemon.graph.verdicts import Rule
 from daemon.shapes import Points
 
 _FIT_PX = 10
@@ -45,19 +47,32 @@ class Entry:
     row: int
 
 
-def unmelted(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, Points] | None:
+@dataclass(frozen=True, slots=True, eq=False)
+class Fewer:
+    """Some edges of others: polylines, ends (E, 2), and vertices (V, 2), in some of which no edge ends any more.
+
+    kept: for each edge which of the others it was. gone: those that are left out and the rule that decided.
+    """
+
+    polylines: list[Points]
+    ends: Indices
+    vertices: Points
+    kept: Sequence[int]
+    gone: Mapping[int, Rule]
+
+
+def unmelted(lines: Lines, *, width_px: float) -> Fewer | None:
     """The edges without the bridges that melted ink has put between lines; None where there is none.
 
     A bridge is an edge from a junction to another vertex, at most eight line widths long. It is taken out where the
     other edges of both, seen from where they lie in ink of their own, meet in one point of it, two lines that cross at
     an acute angle, or where those of a fork meet in its other end, two lines that run into one tip: they are led
-    there. An edge of hardly a line's width between two lines that go on on both sides is taken out, too. Returns
-    polylines, ends (E, 2) and vertices (V, 2), some of which no edge ends in any more.
+    there. An edge of hardly a line's width between two lines that go on on both sides is taken out, too.
     """
     halves = half_edges(lines.ends, len(lines.vertices))
     entries: dict[int, Entry | None] = {}
     places: dict[int, NDArray[np.float64]] = {}
-    gone: set[int] = set()
+    gone: dict[int, Rule] = {}
     touched: set[int] = set()
     longest_px = max(_LEAST_LONGEST_PX, _LONGEST_WIDTHS * width_px)
     for bridge in _bridges(lines, halves, longest_px, _SHORT_WIDTHS * width_px):
@@ -71,7 +86,7 @@ def unmelted(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, P
             places[a], places[b] = place, place
         elif not _is_rung(lines, bridge, halves, width_px):
             continue
-        gone.add(bridge)
+        gone[bridge] = "bridge" if place is not None else "rung"
         touched |= {a, b}
     names = np.arange(len(lines.vertices))
     for a, b in (lines.ends[bridge].tolist() for bridge in gone):
@@ -162,13 +177,13 @@ def _meeting(entries: list[Entry | None], bridge: Points, off_px: float) -> NDAr
 
 def led(
     lines: Lines,
-    gone: set[int],
+    gone: Mapping[int, Rule],
     names: Indices,
     places: dict[int, NDArray[np.float64]],
     entries: dict[int, Entry | None],
     *,
     width_px: float,
-) -> tuple[list[Points], Indices, Points]:
+) -> Fewer:
     """The edges without those gone, led from their sound ink straight to the new places of their vertices.
 
     names: (V,) the vertex that each is one with. entries: of half-edges that end in a new place.
@@ -176,9 +191,10 @@ def led(
     vertices = np.array([places.get(vertex, place) for vertex, place in enumerate(lines.vertices)])
     new = names[lines.ends]
     loops = (new[:, 0] == new[:, 1]) & (lines.ends[:, 0] != lines.ends[:, 1])
-    kept = [i for i in range(len(lines.polylines)) if i not in gone and not (loops[i] and _is_tiny(lines, i, width_px))]
+    tiny: dict[int, Rule] = {i: "loop" for i in np.flatnonzero(loops).tolist() if _is_tiny(lines, i, width_px)}
+    kept = [index for index in range(len(lines.polylines)) if index not in gone and index not in tiny]
     polylines = [_led_edge(lines, index, places, entries) for index in kept]
-    return polylines, new[kept], vertices
+    return Fewer(polylines, new[kept], vertices, kept, tiny | dict(gone))
 
 
 def _is_tiny(lines: Lines, index: int, width_px: float) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.graph.crossings import Entry, Lines, entry, half_edges, led, lengths_px
+from daemon.graph.crossings import Entry, Fewer, Lines, entry, half_edges, led, lengths_px
 from daemon.graph.skeleton import Indices
-from daemon.shapes import Points
+from daemon.graph.verdicts import Rule
 
 _KNOT_WIDTHS = 3.0
 """Edges up to so many line widths long tie vertices into a knot."""
@@ -18,11 +18,8 @@ _AGREEING = 0.8
 """Share of a knot's lines that must pass within 1.2 px of one point."""
 
 
-def hubs(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, Points] | None:
-    """The edges with each knot of three or more vertices drawn together where its lines meet; None where there is none.
-
-    Returns polylines, ends (E, 2) and vertices (V, 2), some of which no edge ends in any more.
-    """
+def hubs(lines: Lines, *, width_px: float) -> Fewer | None:
+    """The edges with each knot of three or more vertices drawn together where its lines meet; None without one."""
     short = (lengths_px(lines) <= _KNOT_WIDTHS * width_px) & (lines.ends[:, 0] != lines.ends[:, 1])
     knots = _knots(lines.ends[short], len(lines.vertices))
     halves = half_edges(lines.ends, len(lines.vertices)) if knots else []
@@ -37,7 +34,7 @@ def hubs(lines: Lines, *, width_px: float) -> tuple[list[Points], Indices, Point
             places |= dict.fromkeys(knot, place)
             names[knot] = knot[0]
             entries |= found
-    gone = {edge for edge in np.flatnonzero(short).tolist() if lines.ends[edge, 0] in places}
+    gone: dict[int, Rule] = {edge: "knot" for edge in np.flatnonzero(short).tolist() if lines.ends[edge, 0] in places}
     return led(lines, gone, names, places, entries, width_px=width_px) if places else None
 
 

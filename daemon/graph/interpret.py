@@ -21,9 +21,10 @@ from daemon.graph.plausibility import values_at
 from daemon.graph.remains import fillings, tied
 from daemon.graph.ridge import onto_ridge
 from daemon.graph.skeleton import Chain, Indices, Skeleton, chain_points, chains, thinned
+from daemon.graph.spurs import unspurred
 from daemon.graph.straight import equations_alone, straight_edges
 from daemon.graph.trace import unexplained
-from daemon.graph.verdicts import Verdict, verdicts
+from daemon.graph.verdicts import Candidates, Origins, Reasons, reasons
 from daemon.graph.vertices import centroids, corner_vertices
 from daemon.ink import Mask, ink_mask, thin
 from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segmentation
@@ -70,12 +71,12 @@ def interpret(
 
 def interpret_with_reasons(
     page: PageImage, segmentation: Segmentation, *, adaptation: Adaptation | None = None
-) -> tuple[LineGraph, Callable[[], list[Verdict]]]:
+) -> tuple[LineGraph, Callable[[], Reasons]]:
     """The repaired graph of `interpret`, and what says, when it is called, why each candidate was kept or refused."""
     _check(page, segmentation)
     ink = _ink_of(page)
-    graph, reasons = _lines(segmentation, ink, adaptation or Adaptation())
-    return replace(_with_dots(graph, ink.dots), specks=ink.specks), reasons
+    graph, why = _lines(segmentation, ink, adaptation or Adaptation())
+    return replace(_with_dots(graph, ink.dots), specks=ink.specks), why
 
 
 def _check(page: PageImage, segmentation: Segmentation) -> None:
@@ -123,9 +124,7 @@ def _by_the_paper(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation)
     return LineGraph(vertices, tuple(edges))
 
 
-def _lines(
-    segmentation: Segmentation, ink: _Ink, adaptation: Adaptation
-) -> tuple[LineGraph, Callable[[], list[Verdict]]]:
+def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> tuple[LineGraph, Callable[[], Reasons]]:
     """The edges of all ink but the dots, and the reasons."""
     width_px, shape = ink.width_px, (ink.lines.shape[0], ink.lines.shape[1])
     skeleton = thinned(ink.lines, shortest_spur_px=width_px / 2 + 1.5)
@@ -134,43 +133,55 @@ def _lines(
     found = chains(skeleton, nodes.owners)
     judged = straight_edges(segmentation, nodes, skeleton, found, ink.lines, adaptation, width_px=width_px)
     straight = judged.kept
-    traced = unexplained(found, skeleton, nodes.vertices, straight, shape, width_px=width_px)
-    reasons = partial(verdicts, nodes.vertices, judged, found, traced)
-    polylines, ends, vertices = _cut_at_tips(skeleton, traced, nodes.vertices, ink.lines)
-    polylines = [nodes.vertices[pair] for pair in straight] + polylines
+    traced, rules = unexplained(found, skeleton, nodes.vertices, straight, shape, width_px=width_px)
+    looked_at = Candidates(nodes.vertices, judged, found, rules, traced)
+    pieces, of, ends, vertices = _cut_at_tips(skeleton, traced, nodes.vertices, ink.lines)
+    polylines, origins = [nodes.vertices[pair] for pair in straight] + pieces, looked_at.origins(of)
     if not polylines:
-        return LineGraph(np.empty((0, 2)), ()), reasons
-    polylines, ends = joined(polylines, np.concatenate([straight, ends]), vertices)
-    lines = _filled(_on_ridge(polylines, ends, vertices, ink), ink)
-    return _used(lines.vertices, _edges(lines, segmentation.lines + segmentation.corners)), reasons
+        return LineGraph(np.empty((0, 2)), ()), partial(reasons, looked_at, origins, [], ink.dots)
+    polylines, ends, members = joined(polylines, np.concatenate([straight, ends]), vertices)
+    lines, origins = _on_ridge(polylines, ends, vertices, origins.joined(members), ink)
+    filled = _filled(lines, ink)
+    why = partial(reasons, looked_at, origins, filled.polylines[len(lines.polylines) :], ink.dots)
+    return _used(filled.vertices, _edges(filled, segmentation.lines + segmentation.corners)), why
 
 
 def _cut_at_tips(
     skeleton: Skeleton, traced: list[Chain], vertices: Points, ink: Mask
-) -> tuple[list[Points], Indices, Points]:
-    """The traced lines, cut at their sharp bends, with the vertices of each piece; each tip is one more vertex."""
+) -> tuple[list[Points], list[int], Indices, Points]:
+    """The traced lines, cut at their sharp bends: pieces, the line of each, its vertices; each tip is one more."""
     polylines: list[Points] = []
+    of: list[int] = []
     ends: list[tuple[int, int]] = []
     tips: list[Points] = []
-    for chain in traced:
+    for number, chain in enumerate(traced):
         pieces = sharpened(chain_points(skeleton, chain, vertices), ink)
         first = len(vertices) + len(tips)
         stops = [chain.start, *range(first, first + len(pieces) - 1), chain.end]
         polylines += pieces
+        of += [number] * len(pieces)
         ends += pairwise(stops)
         tips += [piece[-1:] for piece in pieces[:-1]]
-    return polylines, np.array(ends, np.intp).reshape(-1, 2), np.concatenate([vertices, *tips])
+    return polylines, of, np.array(ends, np.intp).reshape(-1, 2), np.concatenate([vertices, *tips])
 
 
-def _on_ridge(polylines: list[Points], ends: Indices, vertices: Points, ink: _Ink) -> Lines:
-    """The edges in the middle of the ink, crossings that have melted into two junctions put right."""
+def _on_ridge(
+    polylines: list[Points], ends: Indices, vertices: Points, origins: Origins, ink: _Ink
+) -> tuple[Lines, Origins]:
+    """The edges in the middle of the ink, without what melted ink and false corners have put between them."""
     lines = onto_ridge(polylines, ends, vertices, ink.shades, width_px=ink.width_px)
     for _ in range(_ROUNDS):
-        better = hubs(lines, width_px=ink.width_px) or unmelted(lines, width_px=ink.width_px)
-        if better is None:
+        fewer = hubs(lines, width_px=ink.width_px) or unmelted(lines, width_px=ink.width_px)
+        if fewer is None:
             break
-        lines = onto_ridge(*better, ink.shades, width_px=ink.width_px)
-    return lines
+        origins = origins.without(fewer.kept, fewer.gone)
+        lines = onto_ridge(fewer.polylines, fewer.ends, fewer.vertices, ink.shades, width_px=ink.width_px)
+    fewer = unspurred(lines, ink.shades, width_px=ink.width_px)
+    if fewer is None:
+        return lines, origins
+    polylines, ends, members = joined(fewer.polylines, fewer.ends, fewer.vertices)
+    origins = origins.without(fewer.kept, fewer.gone).joined(members)
+    return onto_ridge(polylines, ends, fewer.vertices, ink.shades, width_px=ink.width_px), origins
 
 
 def _filled(lines: Lines, ink: _Ink) -> Lines:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -17,21 +18,35 @@ _LONG_PX, _LONG_DEGREES = 12.0, 8.0
 """Between two edges as long as this the turn is known better."""
 
 
-def joined(polylines: list[Points], ends: Indices, vertices: Points) -> tuple[list[Points], Indices]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Piece:
+    """A polyline between two vertices and the edges that it is made of."""
+
+    line: Points
+    start: int
+    end: int
+    members: tuple[int, ...]
+
+
+def joined(
+    polylines: list[Points], ends: Indices, vertices: Points
+) -> tuple[list[Points], Indices, list[tuple[int, ...]]]:
     """The edges with those joined that meet in a vertex of degree two and hardly turn there.
 
     Hardly: by less than 25 degrees, between two edges of 12 px or more by less than 8.
 
-    polylines: (N, 2) each, from vertex to vertex. ends: (E, 2) indices of their vertices. A ring keeps one vertex.
+    polylines: (N, 2) each, from vertex to vertex. ends: (E, 2) indices of their vertices. Returns polylines, ends, and
+    for each edge the given ones that it is made of. A ring keeps one vertex.
     A network strings false corners along curves; each would hold its edges away from the ridge of the ink.
     """
     halves = _half_edges(ends, len(vertices))
     through = [len(half) == 2 and half[0] >> 1 != half[1] >> 1 for half in halves]
     mates = {a: b for pair, go in zip(halves, through, strict=True) if go for a, b in (pair, pair[::-1])}
-    pieces: list[tuple[Points, int, int]] = []
+    pieces: list[_Piece] = []
     for walk in _walks(mates, len(ends)):
         pieces += _cut(walk, polylines, ends)
-    return [piece[0] for piece in pieces], np.array([piece[1:] for piece in pieces], np.intp).reshape(-1, 2)
+    joined_ends = np.array([(piece.start, piece.end) for piece in pieces], np.intp).reshape(-1, 2)
+    return [piece.line for piece in pieces], joined_ends, [piece.members for piece in pieces]
 
 
 def _half_edges(ends: Indices, count: int) -> list[list[int]]:
@@ -59,19 +74,22 @@ def _walks(mates: dict[int, int], edges: int) -> list[list[int]]:
     return walks
 
 
-def _cut(walk: list[int], polylines: list[Points], ends: Indices) -> list[tuple[Points, int, int]]:
-    """The polyline of a walk, cut at the vertices where it turns, with the vertices of each piece."""
+def _cut(walk: list[int], polylines: list[Points], ends: Indices) -> list[_Piece]:
+    """The polyline of a walk, cut at the vertices where it turns."""
     parts = [polylines[half >> 1][:: -1 if half & 1 else 1] for half in walk]
     stops = [int(ends[half >> 1, half & 1]) for half in walk] + [int(ends[walk[-1] >> 1, 1 - (walk[-1] & 1)])]
     if len(walk) == 1:
-        return [(parts[0], stops[0], stops[1])]
+        return [_Piece(parts[0], stops[0], stops[1], (walk[0] >> 1,))]
     line = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
     rows = np.cumsum([0, *(len(part) - 1 for part in parts)])
     lengths = np.array([np.hypot(*np.diff(part, axis=0).T).sum() for part in parts])
     certain = np.minimum(lengths[:-1], lengths[1:]) >= _LONG_PX
     bent = np.flatnonzero(_turns(line, rows) >= np.where(certain, _LONG_DEGREES, _SHORT_DEGREES)) + 1
     kept = [0, *bent.tolist(), len(walk)]
-    return [(line[rows[a] : rows[b] + 1], stops[a], stops[b]) for a, b in pairwise(kept)]
+    return [
+        _Piece(line[rows[a] : rows[b] + 1], stops[a], stops[b], tuple(half >> 1 for half in walk[a:b]))
+        for a, b in pairwise(kept)
+    ]
 
 
 def _turns(line: Points, rows: Indices) -> Floats:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.graph.skeleton import Chain, Indices, Skeleton
+from daemon.graph.verdicts import Rule
 from daemon.shapes import Points
 
 _COVERED_PX = 1.6
@@ -28,36 +29,53 @@ def unexplained(
     shape: tuple[int, int],
     *,
     width_px: float,
-) -> list[Chain]:
-    """The chains that no straight edge draws.
+) -> tuple[list[Chain], list[Rule]]:
+    """The chains that no straight edge draws, and for each chain the rule that decided.
 
-    straight: (E, 2) pairs of vertices. A chain of which straight edges cover all but a few pixels is left out, and so
-    is a chain that touches itself at its vertex within the ink's own width. Chains without pixels, between vertices
-    that touch, are kept when they are needed to connect the two (rule *short*).
+    straight: (E, 2) pairs of vertices. A chain of which straight edges cover all but a few pixels is left out (rule
+    *covered*), and so is a chain that touches itself at its vertex within the ink's own width (*loop*). Chains without
+    pixels, between vertices that touch, are kept when they are needed to connect the two (*short*).
     """
     near = _distance_to(straight, vertices, shape) <= _COVERED_PX
     drawn = {(min(pair), max(pair)) for pair in straight.tolist()}
-    lines = [chain for chain in chains if chain.path and _is_line(chain, skeleton, vertices, near, width_px)]
+    rules: dict[int, Rule] = {id(c): _first_rule(c, skeleton, vertices, near, width_px) for c in chains}
+    lines = [chain for chain in chains if rules[id(chain)] == "traced"]
     kept = _once(lines, longest_px=2 * width_px)
+    rules |= dict.fromkeys(_missing(lines, kept), "twice")
     joined = [*drawn, *((chain.start, chain.end) for chain in kept)]
     touching = [chain for chain in chains if not chain.path and (chain.start, chain.end) not in drawn]
     kept += _short(touching, vertices, joined)
     kept += _needed(chains, kept, len(vertices), drawn, longest_px=_NEEDED_WIDTHS * width_px)
-    return _without_stubs(kept, chains, drawn, longest_px=width_px)
+    followed = _without_stubs(kept, chains, drawn, longest_px=width_px)
+    rules |= dict.fromkeys(_missing(kept, followed), "stub")
+    rules |= dict.fromkeys(map(id, followed), "traced")
+    return followed, [rules[id(chain)] for chain in chains]
 
 
-def _is_line(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_], width_px: float) -> bool:
+def _missing(chains: list[Chain], others: list[Chain]) -> set[int]:
+    """The ids of the chains that are not among the others."""
+    return {id(chain) for chain in chains} - {id(chain) for chain in others}
+
+
+def _first_rule(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_], width_px: float) -> Rule:
+    """What a chain is by itself, before it is seen beside the others."""
+    if not chain.path:
+        return "short"
+    if not _is_bare(chain, skeleton, vertices, near):
+        return "covered"
+    away = np.hypot(*(skeleton.pixels[chain.path] - vertices[chain.start]).T).max()
+    return "traced" if chain.start != chain.end or away > max(4.0, 2 * width_px) else "loop"
+
+
+def _is_bare(chain: Chain, skeleton: Skeleton, vertices: Points, near: NDArray[np.bool_]) -> bool:
+    """Whether straight edges leave out more of a chain than the rounding of a junction."""
     x, y = skeleton.pixels[chain.path].T
     bare = ~near[y, x]
-    if _longest_run(bare) < min(_RUN_PX, len(chain.path)):
-        # The pixels that its vertices own are ink of this chain, too.
-        before, after = (_bare(chain, skeleton, vertices, near, end) for end in (0, -1))
-        if _longest_run(np.concatenate([before, bare, after[::-1]])) < _RUN_PX:
-            return False
-    if chain.start != chain.end:
+    if _longest_run(bare) >= min(_RUN_PX, len(chain.path)):
         return True
-    away = np.hypot(*(skeleton.pixels[chain.path] - vertices[chain.start]).T).max()
-    return bool(away > max(4.0, 2 * width_px))
+    # The pixels that its vertices own are ink of this chain, too.
+    before, after = (_bare(chain, skeleton, vertices, near, end) for end in (0, -1))
+    return _longest_run(np.concatenate([before, bare, after[::-1]])) >= _RUN_PX
 
 
 def _once(chains: list[Chain], *, longest_px: float) -> list[Chain]:

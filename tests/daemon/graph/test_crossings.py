@@ -60,5 +60,6 @@ def test_a_rung_inside_the_ink_of_two_lines_is_no_line() -> None:
     pairs = [(0, 1), (1, 2), (3, 4), (4, 5), (1, 4)]
     better = unmelted(lines_of(beside, pairs), width_px=3.0)
     assert better is not None
-    assert better[1].tolist() == [[0, 1], [1, 2], [3, 4], [4, 5]]
+    assert better.ends.tolist() == [[0, 1], [1, 2], [3, 4], [4, 5]]
+    assert (better.kept, better.gone) == ([0, 1, 2, 3], {4: "rung"})
     assert unmelted(lines_of(beside, pairs), width_px=2.0) is None

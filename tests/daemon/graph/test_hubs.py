@@ -46,5 +46,7 @@ def test_a_knot_is_drawn_together_where_enough_lines_meet(count: int, off_px: fl
     better = hubs(knotted(count, off_px=off_px), width_px=3.0)
     assert (better is not None) == drawn_together
     if better is not None:
-        assert np.bincount(better[1].ravel()).max() == count
-        assert np.hypot(*(better[2][better[1][0, 0]] - TIP)) < 1.0
+        assert np.bincount(better.ends.ravel()).max() == count
+        assert np.hypot(*(better.vertices[better.ends[0, 0]] - TIP)) < 1.0
+        assert better.gone == {0: "knot", 1: "knot"}
+        assert better.kept == list(range(2, 2 + count))

@@ -12,9 +12,10 @@ Corners = list[tuple[float, float]]
 
 def ends_after(corners: Corners, pairs: list[tuple[int, int]]) -> list[list[int]]:
     vertices = np.array(corners, float)
-    polylines, ends = joined([vertices[list(pair)] for pair in pairs], np.array(pairs), vertices)
+    polylines, ends, members = joined([vertices[list(pair)] for pair in pairs], np.array(pairs), vertices)
     for polyline, (start, end) in zip(polylines, ends, strict=True):
         assert np.array_equal(polyline[[0, -1]], vertices[[start, end]])
+    assert sorted(edge for made_of in members for edge in made_of) == list(range(len(pairs)))
     return [sorted(pair) for pair in ends.tolist()]
 
 

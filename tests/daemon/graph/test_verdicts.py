@@ -7,7 +7,7 @@ import json
 import pytest
 
 from daemon.graph.interpret import interpret, interpret_with_reasons
-from daemon.graph.verdicts import Rule, Verdict, as_json
+from daemon.graph.verdicts import Origins, Reasons, Rule, as_json
 from daemon.shapes import LineGraph
 from tests.daemon.graph.drawn import Lines, channels, circle, page
 
@@ -15,15 +15,16 @@ CROSS: Lines = [[(20, 64), (108, 64)], [(64, 20), (64, 108)]]
 ARC = circle(64, 64, 40, turns=0.4)
 
 
-def told(lines: Lines, corners: list[tuple[float, float]]) -> tuple[LineGraph, list[Verdict]]:
+def told(lines: Lines, corners: list[tuple[float, float]]) -> tuple[LineGraph, Reasons]:
     drawn = page(lines)
     graph, reasons = interpret_with_reasons(drawn, channels(drawn, corners))
     return graph, reasons()
 
 
-def rule(said: list[Verdict], one: tuple[float, float], other: tuple[float, float]) -> Rule:
+def rule(said: Reasons, one: tuple[float, float], other: tuple[float, float]) -> Rule:
     """Of the one verdict on this pair for a straight edge."""
-    (found,) = [v for v in said if {v.start_px, v.end_px} == {one, other} and v.rule not in ("traced", "covered")]
+    on_pair = [v for v in said.candidates if {v.start_px, v.end_px} == {one, other}]
+    (found,) = [v for v in on_pair if v.rule not in ("traced", "covered")]
     return found.rule
 
 
@@ -51,8 +52,35 @@ def test_a_refused_candidate_names_the_rule(
 def test_ink_that_bends_is_traced_and_ink_under_a_straight_edge_is_covered() -> None:
     _, bent = told([ARC], [])
     _, straight = told(CROSS[:1], CROSS[0])
-    assert [verdict.rule for verdict in bent] == ["traced"]
-    assert [verdict.rule for verdict in straight if verdict.plausibility is None] == ["covered"]
+    assert [verdict.rule for verdict in bent.candidates] == ["traced"]
+    assert [verdict.rule for verdict in straight.candidates if verdict.plausibility is None] == ["covered"]
+
+
+def test_a_bridge_between_melted_lines_is_told() -> None:
+    graph, said = told([[(14, 51), (114, 77)], [(14, 77), (114, 51)]], [])
+    taken = [verdict for verdict in said.candidates if verdict.rule == "bridge"]
+    assert taken
+    assert not any(verdict.kept for verdict in taken)
+    assert len(said.edges) == len(graph.edges)
+
+
+def test_every_edge_has_its_rule() -> None:
+    blot: Lines = [[(30, 100 + i), (60, 100 + i)] for i in range(0, 14, 2)]
+    graph, said = told([*CROSS, ARC, *blot, [(10, 10), (10, 10)]], [*CROSS[0], *CROSS[1], (64, 64)])
+    assert set(said.edges) == {"straight", "traced", "filling", "dot"}
+    kinds = [len(edge.polyline) for edge in graph.edges]
+    assert len(said.edges) == len(kinds)
+    assert [kind == 1 for kind in kinds] == [why == "dot" for why in said.edges]
+    kept = [verdict.rule for verdict in said.candidates if verdict.kept]
+    assert {why: kept.count(why) for why in ("filling", "dot")} == {w: said.edges.count(w) for w in ("filling", "dot")}
+
+
+def test_a_candidate_is_gone_only_when_no_edge_is_made_of_it() -> None:
+    """Candidate 1 was cut into two edges: one of them is taken out, the other stays."""
+    found = Origins(((0,), (1,), (1,), (2,))).without([0, 2], {1: "bridge", 3: "spur"})
+    assert found.of == ((0,), (1,))
+    assert found.gone == {1: "bridge", 2: "spur"}
+    assert found.joined([(0, 1)]).of == ((0, 1),)
 
 
 def test_reasons_cost_the_graph_nothing() -> None:
@@ -74,7 +102,7 @@ def test_the_weakest_pixel_of_an_edge_is_known() -> None:
 def test_the_file_tells_each_edge_with_its_figures() -> None:
     graph, said = told([*CROSS[:1], [(64, 100), (64, 100)]], CROSS[0])
     words = json.loads(json.dumps(as_json(graph, said), allow_nan=False))
-    assert [edge["kind"] for edge in words["edges"]] == ["straight", "dot"]
+    assert [(edge["kind"], edge["rule"]) for edge in words["edges"]] == [("straight", "straight"), ("dot", "dot")]
     assert words["edges"][0]["length_px"] == pytest.approx(88, abs=2)
     assert words["candidates"][0] | {"plausibility": 1.0} == {
         "start_px": [20, 64],
