@@ -99,6 +99,17 @@ def test_a_stop_takes_the_file_back_and_says_what_nobody_knows(tmp_path: Path) -
     assert "RESET" in end.why
 
 
+def test_a_stop_does_not_take_away_what_somebody_has_changed(tmp_path: Path) -> None:
+    events: list[Event] = []
+
+    def changed(asked: threading.Event, seconds: float) -> bool:
+        (tmp_path / "O0001.NC").write_text("(mine)")
+        return True
+
+    FileDrop(tmp_path, heard=events.append, until_stopped=changed).draw(program())
+    assert (tmp_path / "O0001.NC").read_text() == "(mine)"
+
+
 def test_a_stop_from_before_is_obeyed_before_anything_is_written(tmp_path: Path) -> None:
     drop = Drop(tmp_path)
     drop.machine.stop()
@@ -122,16 +133,17 @@ def test_a_program_that_cannot_be_written_leaves_nothing_behind(
 
 
 def test_the_control_never_sees_a_part_of_a_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    seen: list[list[str]] = []
+    seen: list[tuple[list[str], int]] = []
     real = os.fsync
 
     def look(descriptor: int) -> None:
-        seen.append(os.listdir(tmp_path))
+        seen.append((os.listdir(tmp_path), os.fstat(descriptor).st_ino))
         real(descriptor)
 
     monkeypatch.setattr(os, "fsync", look)
     Drop(tmp_path).draw()
-    assert seen[0] == ["O0001.NC.part"]
+    # What was written under the other name is, whole, the file that the control sees.
+    assert seen[0] == (["O0001.NC.part"], (tmp_path / "O0001.NC").stat().st_ino)
 
 
 def test_a_missing_folder_is_no_machine(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from firmware_protocol.emco.dialects import FANUC
-from firmware_protocol.emco.faults import FlipBit, LoseXon, PowerCut, Reset, Stall
+from firmware_protocol.emco.faults import FlipBit, LoseXon, PowerCut, Reset, Stall, Unplug
 from firmware_protocol.emco.line_format import FORMATS
 from firmware_protocol.emco.setup import Setup
 from firmware_protocol.emco.simulator import EmcoSimulator, simulator_from
@@ -147,6 +147,26 @@ def test_reset_and_power_cut_stop_the_motion_and_say_nothing(fault: Reset) -> No
     assert simulator.advance(60.0) == b""
     assert 0 < simulator.position_mm[0] < 10
     assert not simulator.moving
+
+
+def test_a_fault_with_a_time_happens_once_however_often_the_port_is_opened() -> None:
+    simulator = opened(faults=[Reset(1.0)])
+    simulator.advance(2.0)
+    simulator.open(2.0)
+    simulator.advance(2.1)
+    simulator.receive(HEAD + b"G1 X50.0 F600.0\n", 2.1)
+    simulator.advance(60.0)
+    assert simulator.position_mm[0] == 50.0
+
+
+def test_nothing_goes_either_way_through_a_pulled_cable() -> None:
+    simulator = opened(Setup(repeat_xon_s=1.0), faults=[Unplug(1.5)])
+    assert simulator.advance(1.4) == XON * 2
+    assert simulator.advance(5.0) == b""
+    assert simulator.unplugged
+    simulator.receive(HEAD + b"G0 X1.0\n", 5.0)
+    simulator.advance(10.0)
+    assert (simulator.position_mm[0], simulator.blocks) == (0.0, 0)
 
 
 def test_a_stalled_control_says_xoff_and_draws_what_it_has_read() -> None:
