@@ -80,8 +80,8 @@ TABLE = (
 )
 
 
-_CROP = (("XENT", 2), ("MWX", 0))
-"""Rows of the table whose answers are shown side by side."""
+_CROP = {"XENT": "(7 3 4 3) xent", "MWX": "(7 3 4 3) mwx"}
+"""The networks whose answers are shown side by side."""
 
 
 class Pages:
@@ -213,8 +213,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from training.plot import draw_table  # noqa: PLC0415
 
         fat = None
-        crop_of = {name: given.out / key_of(TABLE[k], False).replace(" ", "-") / "checkpoint.pt" for name, k in _CROP}
-        if all(key_of(TABLE[k], False) in results for _, k in _CROP) and all(p.exists() for p in crop_of.values()):
+        crop_of = {name: given.out / key.replace(" ", "-") / "checkpoint.pt" for name, key in _CROP.items()}
+        if results.keys() >= set(_CROP.values()) and all(path.exists() for path in crop_of.values()):
             from training.crop import draw_crop  # noqa: PLC0415
 
             fat = draw_crop(crop_of, RESULTS.parent / "crop.png")
