@@ -13,7 +13,7 @@ from firmware_protocol.grbl.flow import Flow
 from firmware_protocol.grbl.habits import GO_ON, POLL_S, USUAL_POLL_S, Habits
 from firmware_protocol.grbl.job import Job
 from firmware_protocol.grbl.preparation import Preparation
-from firmware_protocol.grbl.replies import Alarm, Banner, Error, Ok, Reply, StatusReport, Unknown
+from firmware_protocol.grbl.replies import Alarm, Banner, Error, Ok, Reply, StatusReport, Triple, Unknown
 from firmware_protocol.grbl.reports import heard_report
 from firmware_protocol.grbl.states import POLLED, RUNNING, TRANSITIONS, Signal, State
 from firmware_protocol.grbl.watch import Watch
@@ -46,8 +46,10 @@ class Conversation:
         self.preparation: Preparation | None = None
         self.waits_for = ""
         """The state in which the machine waits for a person in the middle of a job."""
-        self.astray = 0
-        """Reports in a row that saw the pen off the path."""
+        self.astray = self.elsewhere = 0
+        """Reports in a row that saw the pen off the path; reports that saw it rest elsewhere than at the end."""
+        self.off_mm: Triple | None = None
+        """Where the pen was seen off the path."""
         self.places = ""
         """The line that stores where the origin lies."""
 
@@ -180,7 +182,7 @@ class Conversation:
         homing = self.flow.homing
         line = self.flow.answer()
         if line is None:
-            return
+            return self._torn()
         self.watch.answered()
         if homing:
             self.watch.begin(self.now, every_s=USUAL_POLL_S)
@@ -191,6 +193,12 @@ class Conversation:
             self.events += [] if number is None else [Accepted(number)]
         if self.flow.done:
             self._complete()
+
+    def _torn(self) -> None:
+        """An answer that nobody owes. The line that was torn may have been any, as one answer has been ahead since."""
+        if self.job is not None and self.flow is self.job.leg.flow and self.state in RUNNING:
+            self.job.leg.doubt_from(0)
+            self.go(Signal.TORN, sentences.TORN)
 
     def _refused(self, line: int, code: int) -> None:
         why = sentences.rejected(*self.named(line), code)

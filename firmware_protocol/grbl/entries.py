@@ -25,6 +25,7 @@ _VERDICTS = {
     Signal.ABORT: Verdict.STOPPED,
     Signal.REFUSED: Verdict.REJECTED,
     Signal.ASTRAY: Verdict.ASTRAY,
+    Signal.TORN: Verdict.ASTRAY,
     Signal.STUCK: Verdict.SILENT,
     Signal.SILENCE: Verdict.SILENT,
     Signal.ALARM: Verdict.ALARM,
@@ -80,7 +81,7 @@ def _leaving(talk: Conversation, _: Cause) -> None:
 
 def _streaming(talk: Conversation, _: Cause) -> None:
     assert talk.job is not None
-    talk.flow, talk.astray, talk.waits_for = talk.job.leg.flow, 0, ""
+    talk.flow, talk.astray, talk.elsewhere, talk.waits_for = talk.job.leg.flow, 0, 0, ""
 
 
 def _ready(talk: Conversation, cause: Cause) -> None:

@@ -35,10 +35,9 @@ class Flow:
         self._room_bytes = room_bytes
         self._alone: set[int] = set()
         self._barriers: set[int] = set()
-        self.owed_bytes = 0
-        """Bytes sent of lines that are not answered."""
+        self._owed_bytes = 0
         self.synced = 0
-        """Up to this line answers and lines are known to belong together: nothing was owed behind it."""
+        """Up to this line answers and lines are known to belong together: all was answered, or `prove` has shown it."""
         self.sent = 0
         self.answered = 0
         self.drawn = 0
@@ -74,7 +73,7 @@ class Flow:
         """The next lines that fit, to be written now."""
         first = self.sent
         while self.sent < len(self._lines) and self._fits(self.sent):
-            self.owed_bytes += len(self._lines[self.sent])
+            self._owed_bytes += len(self._lines[self.sent])
             self.sent += 1
         return b"".join(self._lines[first : self.sent])
 
@@ -83,7 +82,7 @@ class Flow:
         if not self.owed:
             return None
         line = self.answered
-        self.owed_bytes -= len(self._lines[line])
+        self._owed_bytes -= len(self._lines[line])
         self.answered += 1
         # A reset in a dwell answers the dwell without executing it; an answer to the line behind is proof.
         if line - 1 in self._barriers:
@@ -92,10 +91,14 @@ class Flow:
             self.synced = self.answered
         return line
 
-    @property
-    def first_bytes(self) -> int:
-        """Length of the oldest unanswered line, its end included; 0 when nothing is owed."""
-        return len(self._lines[self.answered]) if self.owed else 0
+    def prove(self, ring_bytes: int) -> None:
+        """A report made while the planner was full counts so many bytes in the receive buffer.
+
+        The controller then holds the oldest unanswered line in hand and the others in the buffer: where that adds up,
+        no answer and no line end has been lost so far.
+        """
+        if self.owed > 1 and ring_bytes == self._owed_bytes - len(self._lines[self.answered]):
+            self.synced = self.answered
 
     def replace_from(self, line: int, texts: Sequence[str]) -> None:
         """From `line` on, which has not been sent, other lines follow."""
@@ -115,7 +118,7 @@ class Flow:
             return True
         if self._room_bytes is None or line in self._alone or line - 1 in self._alone:
             return False
-        return self.owed_bytes + len(self._lines[line]) <= self._room_bytes
+        return self._owed_bytes + len(self._lines[line]) <= self._room_bytes
 
 
 def check(texts: Sequence[str], *, buffer_bytes: int) -> None:

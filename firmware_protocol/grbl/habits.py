@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from firmware_protocol.grbl.states import State
 
-RESET, HOLD, GO_ON = b"\x18", b"!", b"~"
+ASK, RESET, HOLD, GO_ON = b"?", b"\x18", b"!", b"~"
 
 POLL_S = {State.READY: 1.0, State.PAUSED: 1.0, State.RESTED: 1.0, State.HOLDING: 0.1, State.RESTARTED: 0.1}
 """Seconds between two `?` where it is not GRBL's own advice of 0.2: a hold is watched closer, the pen is down."""

@@ -7,16 +7,16 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from firmware_protocol.grbl import sentences
-from firmware_protocol.grbl.habits import HOLD, HOLD_WITHIN_S, RESET, STANDS
+from firmware_protocol.grbl.habits import ASK, HOLD, HOLD_WITHIN_S, RESET, STANDS
 from firmware_protocol.grbl.replies import StatusReport
 from firmware_protocol.grbl.states import RUNNING, Signal, State
-from firmware_protocol.session import Status, Waiting
+from firmware_protocol.session import Finding, Found, Status, Waiting
 
 if TYPE_CHECKING:
     from firmware_protocol.grbl.conversation import Conversation
 
 ASTRAY_REPORTS = 2
-"""So many reports in a row off the path are no coincidence."""
+"""The chip may read a place while it changes, and a report be changed on its way: a second one is asked for at once."""
 
 _WAITS = {"Hold": {"Hold:0"}, "Door": {"Door:0", "Door:1"}, "Sleep": {"Sleep"}}
 """States in which the machine goes on only when a person does something."""
@@ -47,13 +47,19 @@ def _follow(talk: Conversation, report: StatusReport) -> None:
     if talk.job is None or talk.flow is not talk.job.leg.flow or talk.flow.homing:
         return
     talk.job.leg.executing(report.line_number)
+    if report.free_blocks == 0 and report.free_bytes is not None:
+        talk.flow.prove(talk.controller.buffer_bytes - report.free_bytes)
     place_mm = talk.controller.place_mm
     if place_mm is None or report.state not in {"Run", "Idle"} or talk.job.leg.on_path(place_mm):
+        if talk.astray and talk.off_mm is not None:
+            talk.events.append(Found(Finding("path", sentences.glimpsed(talk.off_mm))))
         talk.astray = 0
         return
-    talk.astray += 1
+    talk.astray, talk.off_mm = talk.astray + 1, place_mm
     if talk.astray >= ASTRAY_REPORTS:
         _go_astray(talk)
+    else:
+        talk.urgent += ASK
 
 
 def _go_astray(talk: Conversation) -> None:
@@ -89,7 +95,11 @@ def _settled(talk: Conversation, report: StatusReport) -> None:
         return
     place_mm = talk.controller.place_mm
     if place_mm is not None and not talk.job.leg.at_end(place_mm):
-        _go_astray(talk)
+        talk.elsewhere += 1
+        if talk.elsewhere >= ASTRAY_REPORTS:
+            _go_astray(talk)
+        else:
+            talk.urgent += ASK
     elif not talk.job.pausing:
         talk.go(Signal.STILL)
     elif paused := talk.job.stands():

@@ -81,6 +81,20 @@ def astray(place_mm: Triple, number: int, text: str) -> str:
     )
 
 
+def glimpsed(place_mm: Triple) -> str:
+    """For a single report that no second one confirmed."""
+    x, y, z = place_mm
+    return (
+        f"one report put the pen at ({x:g}, {y:g}, {z:g}) mm, off its path, the next one did not: look at the drawing"
+    )
+
+
+TORN = (
+    "the controller has answered more lines than were sent, so a line was torn on the way: "
+    "check the cable, then draw on a new sheet"
+)
+
+
 def silent(seconds: float) -> str:
     return f"the controller has not answered for {seconds:g} s: check the cable and its power supply"
 

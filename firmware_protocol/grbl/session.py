@@ -11,14 +11,12 @@ from firmware_protocol.grbl import replies, sentences
 from firmware_protocol.grbl.controller import Controller
 from firmware_protocol.grbl.conversation import Conversation
 from firmware_protocol.grbl.findings import findings, needs_of
-from firmware_protocol.grbl.habits import RESET, USUAL_POLL_S, Habits, Patience
+from firmware_protocol.grbl.habits import ASK, RESET, USUAL_POLL_S, Habits, Patience
 from firmware_protocol.grbl.job import Job
 from firmware_protocol.grbl.states import POLLED, RUNNING, SENDING, TRANSITIONS, Signal, State
 from firmware_protocol.grbl.watch import Watch
 from firmware_protocol.lines import LineReader
 from firmware_protocol.session import Event, Finding, JobLine
-
-ASK = b"?"
 
 BOOT_S = 2.0
 """A boot loader is deaf for up to 2 s after the port was opened; what is said to it earlier is lost."""

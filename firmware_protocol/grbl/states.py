@@ -59,6 +59,7 @@ class Signal(Enum):
     ABORT = auto()
     REFUSED = auto()
     ASTRAY = auto()
+    TORN = auto()
     HELD = auto()
     ALARM = auto()
     STUCK = auto()
@@ -187,6 +188,7 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     # A job that is stopped, by a person, by `error:N`, for a lost answer or a wrong way: hold, reset, lift.
     **{(state, Signal.STOP): State.HOLDING for state in RUNNING},
     **{(state, Signal.ASTRAY): State.HOLDING for state in RUNNING},
+    **{(state, Signal.TORN): State.HOLDING for state in RUNNING},
     (State.STREAMING, Signal.REFUSED): State.HOLDING,
     (State.STREAMING, Signal.STUCK): State.HOLDING,
     (State.STREAMING, Signal.ABORT): State.LOST,

@@ -39,6 +39,21 @@ def test_an_answer_that_nobody_asked_for_belongs_to_no_line() -> None:
     assert (lines.answer(), lines.answer(), lines.done) == (0, None, True)
 
 
+def test_a_full_planner_and_a_buffer_that_adds_up_prove_that_no_answer_is_missing() -> None:
+    lines = Flow(["G1X1", "G1X22", "G1X333"], room_bytes=128)
+    lines.take()
+    lines.answer()
+    lines.prove(12)
+    assert lines.synced == 0
+    lines.prove(7)
+    assert lines.synced == 1
+    lines.answer()
+    lines.prove(0)
+    assert lines.synced == 1
+    lines.answer()
+    assert lines.synced == 3
+
+
 @pytest.mark.parametrize("deaf", ["$H", "G10 L2 P1 X0", "G28.1", "G30.1"])
 def test_nothing_is_on_the_wire_beside_a_line_that_makes_the_controller_deaf(deaf: str) -> None:
     lines = Flow(["G4P0", deaf, "G4P0"], room_bytes=128)

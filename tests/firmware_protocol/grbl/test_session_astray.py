@@ -6,7 +6,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from firmware_protocol.grbl.simulator.faults import FlipByte
-from firmware_protocol.session import Ended, Verdict
+from firmware_protocol.session import Accepted, Ended, Found, Verdict
 from tests.firmware_protocol.grbl.driver import DONE, Line, drawing
 from tests.firmware_protocol.grbl.pair import FAST, Pair, plotter, stroke_lines
 
@@ -17,7 +17,7 @@ ON = "<Run|MPos:1.500,0.000,0.000|FS:500,0>"
 
 def test_two_reports_off_the_path_stop_the_job() -> None:
     play = drawing()
-    assert play.say(OFF) == b""
+    assert play.say(OFF) == b"?"
     assert play.say(OFF).startswith(b"!")
     play.say("<Hold:0|MPos:1.000,4.000,0.000|FS:0,0>")
     play.say("Grbl 1.1h ['$' for help]")
@@ -29,16 +29,34 @@ def test_two_reports_off_the_path_stop_the_job() -> None:
     assert "the pen was seen at (1, 4, 0) mm" in end.why
 
 
-def test_one_report_between_good_ones_is_none() -> None:
+def test_an_answer_too_many_stops_the_job() -> None:
     play = drawing()
-    play.say(OFF, ON, OFF, ON)
-    assert play.told == []
+    play.say(*["ok"] * 7)
+    assert play.say("ok").startswith(b"!")
+    play.say("<Hold:0|MPos:4.000,0.000,5.000|FS:0,0>")
+    play.say("Grbl 1.1h ['$' for help]")
+    for _ in range(3):
+        play.say("ok")
+    assert (play.ended.verdict, play.ended.strokes_certain, play.ended.strokes_possible) == (Verdict.ASTRAY, 0, 2)
+    assert "a line was torn" in play.ended.why
+
+
+def test_one_report_between_good_ones_is_told_and_no_verdict() -> None:
+    play = drawing()
+    play.say(OFF, ON)
+    (told,) = play.told
+    assert isinstance(told, Found)
+    assert "one report put the pen at (1, 4, 0) mm" in told.finding.why
+    assert not told.finding.blocks
 
 
 def test_a_drawing_that_ends_somewhere_else_is_not_finished() -> None:
     play = drawing()
     play.say(*["ok"] * 7)
-    assert play.say(DONE.replace("4.000", "4.500")).startswith(b"!")
+    elsewhere = DONE.replace("4.000", "2.000")
+    play.say(elsewhere)
+    assert play.told[-1] == Accepted(3)
+    assert play.say(elsewhere).startswith(b"!")
 
 
 def test_a_digit_that_was_changed_on_the_way_is_seen_while_the_pen_goes_astray() -> None:
