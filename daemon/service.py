@@ -28,6 +28,7 @@ from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
 from daemon.jobs.sheet import box_origin_mm
+from daemon.machine.recorder import Recorder
 from daemon.program.file import load_program
 from daemon.shapes import Program
 from daemon.status import Diary, StatusBoard
@@ -50,8 +51,12 @@ class Parts:
 
 
 @contextmanager
-def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None = None) -> Iterator[Parts]:
+def parts_of(
+    settings: Settings, *, verbose: bool = False, planner: str | None = None, record: Path | None = None
+) -> Iterator[Parts]:
     """Everything that works on the state folder, which belongs to us until the block is left.
+
+    record: a file into which everything that is said to the machine and by it is written.
 
     Raises SettingsError when another daemon works on it or its programs suit no machine here, and DiskTrouble.
     """
@@ -69,9 +74,10 @@ def parts_of(settings: Settings, *, verbose: bool = False, planner: str | None =
         asks, ahead = settings.machines[name].asks_for_sheets, settings.planning.ahead
         desk = Desk(journal, folders, say=diary.say, show=board.change, asks_for_sheets=asks, ahead=ahead)
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
+        recorder = at_end.enter_context(closing(Recorder(record))) if record else None
         drawing = Drawing(
             desk,
-            opened=lambda hear, still: opened(settings.machines[name], hear, still),
+            opened=lambda hear, still: opened(settings.machines[name], hear, still, recorder),
             moves=moves_of(settings.machines[name]),
             places=_places(settings, desk),
             load=load_program,

@@ -52,8 +52,8 @@ def _event_parser() -> argparse.ArgumentParser:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from daemon.cli import control, draw, machine, models, plan, serve, simulate, status  # noqa: PLC0415
-    from daemon.cli.options import add_machine, add_places  # noqa: PLC0415
+    from daemon.cli import control, draw, machine, models, plan, replay, serve, simulate, status  # noqa: PLC0415
+    from daemon.cli.options import add_machine, add_places, add_record  # noqa: PLC0415
 
     parser = argparse.ArgumentParser(
         prog="linedrawd",
@@ -64,9 +64,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linedrawd {__version__}")
     add_machine(parser)
     add_places(parser)
+    add_record(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, control, machine, status, models, simulate):
+    for group in (plan, draw, control, machine, status, models, simulate, replay):
         group.add_parser(subparsers)
     return parser
 

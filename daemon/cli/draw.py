@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from daemon.cli.options import add_machine, add_places, settings_of, verbose
+from daemon.cli.options import add_machine, add_places, add_record, record_of, settings_of, verbose
 from daemon.errors import LinedrawError, MachineFault
 from daemon.jobs.states import State
 from daemon.service import Parts, parts_of
@@ -37,6 +37,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("picture", metavar="PICTURE", type=Path)
     add_machine(parser)
     add_places(parser)
+    add_record(parser)
     parser.set_defaults(run=run)
 
 
@@ -47,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     settings = settings_of(args, machine_needed=True)
     if not args.picture.is_file():
         raise LinedrawError(f"there is no file {args.picture}: give the path of a picture")
-    with parts_of(settings, verbose=verbose(args)) as parts:
+    with parts_of(settings, verbose=verbose(args), record=record_of(args)) as parts:
         job_id = parts.desk.copy(args.picture.absolute(), args.picture.name)
         _draw_watched(parts, job_id)
         job = parts.desk.find(job_id)

@@ -37,6 +37,17 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
     group.add_argument("-v", "--verbose", action="store_true", default=argparse.SUPPRESS, help="show the log on stderr")
 
 
+def add_record(parser: argparse.ArgumentParser) -> None:
+    """Where everything is written down."""
+    words = "write every byte to and from the machine, with its time; `linedrawd replay FILE` reads it"
+    parser.add_argument("--record", metavar="FILE", type=Path, default=argparse.SUPPRESS, help=words)
+
+
+def record_of(args: argparse.Namespace) -> Path | None:
+    """The file of `--record`; a file drop hears and says nothing that could be recorded."""
+    return getattr(args, "record", None)
+
+
 def settings_of(args: argparse.Namespace, *, machine_needed: bool = False) -> Settings:
     """The settings of this command line. Raises SettingsError."""
     paths = {name: Path(getattr(args, name)) for name in _PATHS if getattr(args, name, None)}

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 
-from daemon.cli.options import settings_of, verbose
+from daemon.cli.options import record_of, settings_of, verbose
 from daemon.service import Service, parts_of
 
 
 def run(args: argparse.Namespace) -> int:
     """Until SIGTERM. Without a machine it keeps running and waits for one. 1 when a mistake of ours ended it."""
     settings = settings_of(args, machine_needed=True)
-    with parts_of(settings, verbose=verbose(args)) as parts:
+    with parts_of(settings, verbose=verbose(args), record=record_of(args)) as parts:
         service = Service(settings, parts)
         service.end_on_signals()
         return 0 if service.run() else 1

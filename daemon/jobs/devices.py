@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol, TypeAlias, TypeVar
 
-from daemon.config import DobotMachine, EmcoMachine, GrblMachine, Machine
+from pydantic import TypeAdapter, ValidationError
+
+from daemon.config import AnyMachine, DobotMachine, EmcoMachine, GrblMachine, Machine
+from daemon.errors import LinedrawError
 from daemon.jobs import dobot, emco, grbl
 from daemon.jobs.moves import Moves
 from daemon.jobs.open_machine import OpenMachine
+from daemon.machine.open import Conversation, Record
+from daemon.machine.recorder import Recorder
 from daemon.shapes import Program, Toolpath
 from firmware_protocol.errors import ProtocolError
-from firmware_protocol.session import Event
+from firmware_protocol.session import Event, Session
 
 M_contra = TypeVar("M_contra", bound=Machine, contravariant=True)
 Hear: TypeAlias = Callable[[Event], None]
@@ -24,7 +29,9 @@ class Device(Protocol[M_contra]):
 
     def times_s(self, lines: list[str]) -> list[float]: ...
 
-    def opened(self, machine: M_contra, hear: Hear, *, still: bool) -> OpenMachine: ...
+    def opened(self, machine: M_contra, hear: Hear, *, still: bool, record: Record) -> OpenMachine: ...
+
+    def conversation(self, machine: M_contra, *, still: bool) -> Conversation[Any]: ...
 
     def check(self, machine: M_contra) -> None: ...
 
@@ -50,12 +57,24 @@ def seconds_of(program: Program, machine: Machine) -> float:
         return 0.0
 
 
-def opened(machine: Machine, hear: Hear, still: bool) -> OpenMachine:
+def opened(machine: Machine, hear: Hear, still: bool, recorder: Recorder | None = None) -> OpenMachine:
     """The machine, its port open and nothing said yet; `still`: nothing moves by itself, so it is not homed.
 
     Raises NoMachine and SettingsError.
     """
-    return _device(machine).opened(machine, hear, still=still)
+    record = Record(recorder, {"machine": machine.model_dump(mode="json"), "still": still})
+    return _device(machine).opened(machine, hear, still=still, record=record)
+
+
+def replayed(settings: dict[str, Any], now: float) -> tuple[Session, Callable[[float], None] | None]:
+    """The session that was recorded with these settings, and how it homes. Raises LinedrawError for strange ones."""
+    try:
+        machine = TypeAdapter[Machine](AnyMachine).validate_python(settings["machine"])
+        conversation = _device(machine).conversation(machine, still=bool(settings["still"]))
+    except (ValidationError, KeyError, TypeError) as error:
+        raise LinedrawError(f"the recording is of another version ({error}): use that version") from None
+    session, home = conversation.session(now), conversation.home
+    return session, None if home is None else (lambda at_s: home(session, at_s))
 
 
 def check(machine: Machine) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from daemon.config import DobotMachine
 from daemon.jobs.moves import DobotMoves
-from daemon.machine.open import Conversation, OpenedMachine, open_machine
+from daemon.machine.open import Conversation, OpenedMachine, Record, open_machine
 from daemon.machine.ports import find_dobot
 from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_by
@@ -40,22 +40,27 @@ def times_s(lines: list[str]) -> list[float]:
     return line_times_s(lines)
 
 
-def opened(machine: DobotMachine, hear: Callable[[Event], None], *, still: bool) -> OpenedMachine[DobotSession]:
-    home = machine.home != "never" and not still
+def opened(
+    machine: DobotMachine, hear: Callable[[Event], None], *, still: bool, record: Record
+) -> OpenedMachine[DobotSession]:
     return open_machine(
         machine.url if machine.url != "auto" else find_dobot(adapters()),
-        Conversation(
-            lambda now: DobotSession(
-                now=now, home=home, up_mm=machine.pen.up_mm, sheet_origin_mm=machine.sheet_origin_mm
-            ),
-            lambda session, lines: line_times_s(lines),
-            lambda session, program: [f"firmware: {session.firmware}", f"queue: {session.queue_depth} commands"],
-            lift=Program((), 0),
-        ),
+        conversation(machine, still=still),
         # An asserted line can reset the arm's controller, or start its boot loader.
         framing=Framing(machine.baud, dtr=False),
         simulate=lambda: _simulated(machine),
         heard=hear,
+        record=record,
+    )
+
+
+def conversation(machine: DobotMachine, *, still: bool) -> Conversation[DobotSession]:
+    home = machine.home != "never" and not still
+    return Conversation(
+        lambda now: DobotSession(now=now, home=home, up_mm=machine.pen.up_mm, sheet_origin_mm=machine.sheet_origin_mm),
+        lambda session, lines: line_times_s(lines),
+        lambda session, program: [f"firmware: {session.firmware}", f"queue: {session.queue_depth} commands"],
+        lift=Program((), 0),
     )
 
 

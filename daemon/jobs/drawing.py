@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import time
-from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
@@ -17,9 +16,10 @@ from daemon.jobs.journal import Job
 from daemon.jobs.moves import Moves
 from daemon.jobs.open_machine import InkMm, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
+from daemon.jobs.progress import Progress, end_in_words, tell
 from daemon.jobs.states import State
 from daemon.shapes import Program
-from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Sent, Verdict, Waiting
+from firmware_protocol.session import Accepted, Ended, Event, Verdict
 
 IDLE_S = 1.0
 NO_MACHINE_RETRY_S = 3.0
@@ -230,7 +230,7 @@ class Drawing:
         state = State.CANCELLED if cancelled else _STATES.get(ended.verdict, State.INTERRUPTED)
         if not self._desk.held:
             self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=cancelled or state is State.DONE)
-        self._desk.step_at_last(job.id, state, _words(ended, program.strokes), real_s=real_s, port=port)
+        self._desk.step_at_last(job.id, state, end_in_words(ended, program.strokes), real_s=real_s, port=port)
 
     def _go_on_or_hold(self, why: str, *, on: bool) -> None:
         if on:
@@ -255,57 +255,14 @@ class Drawing:
             self._desk.trouble(f"the report is not complete: {error}", job=job.id)
 
     def _hear(self, event: Event) -> None:
-        show, say = self._desk.show, self._desk.say
-        match event:
-            case Accepted(line=line) if self._progress:
-                self._progress.accepted(line)
-            case Found(finding=finding, mended=mended):
-                cure = "has been corrected" if mended else (f"mend it by {finding.command}" if finding.command else "")
-                say(f"{finding.why}{': ' if cure else ''}{cure}", level=logging.WARNING, about=finding.about)
-            case Waiting(why=why):
-                say(why, level=logging.WARNING)
-                show(state="waiting", words=why)
-            case Paused(stroke=stroke):
-                say("paused, the pen is up", stroke=stroke)
-                show(state="paused", words="`linedrawd resume` goes on, `linedrawd stop` ends it")
-            case Sent(drawn_in_s=seconds):
-                say("everything has been sent", drawn_in_s=seconds)
-                show(words="everything has been sent, when it is drawn is an estimate", seconds_left=round(seconds, 1))
-
-
-class Progress:
-    """How far a program has come, by the lines that the machine has acknowledged."""
-
-    def __init__(self, show: Callable[..., None], program: Program, line_times_s: Sequence[float]) -> None:
-        self._show, self._times_s = show, line_times_s
-        last_line = {line.stroke: number for number, line in enumerate(program.lines) if line.stroke is not None}
-        self._last_lines = [last_line[stroke] for stroke in sorted(last_line)]
-        self._lines = len(program.lines)
-
-    def accepted(self, line: int) -> None:
-        all_s = self._times_s[-1] if self._times_s else 0.0
-        done_s = self._times_s[line] if line < len(self._times_s) else all_s
-        self._show(
-            state="drawing",
-            words="",
-            strokes_done=bisect_right(self._last_lines, line),
-            percent=round(100 * (done_s / all_s if all_s else (line + 1) / self._lines), 1),
-            seconds_left=round(all_s - done_s, 1),
-        )
+        if isinstance(event, Accepted):
+            if self._progress:
+                self._progress.accepted(event.line)
+        else:
+            tell(event, say=self._desk.say, show=self._desk.show)
 
 
 def _add_to_report(path: Path, real_s: float) -> None:
     if path.exists():
         report = json.loads(path.read_text(encoding="utf-8")) | {"real_s": real_s}
         write_durably(path, (json.dumps(report, indent=2) + "\n").encode())
-
-
-def _words(ended: Ended, strokes: int) -> str:
-    if ended.verdict is Verdict.FINISHED:
-        estimate = ", by the time model: the machine does not say so" if ended.estimated else ""
-        return f"all {strokes} strokes are drawn{estimate}"
-    pen = "the pen is up" if ended.pen_lifted else "the pen may be down"
-    return (
-        f"{ended.why} (of {strokes} strokes {ended.strokes_certain} are certainly drawn, none after the first "
-        f"{ended.strokes_possible} is touched; {pen})"
-    )

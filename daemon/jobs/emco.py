@@ -12,7 +12,7 @@ from daemon.jobs.moves import NoMoves
 from daemon.jobs.open_machine import OpenMachine
 from daemon.jobs.pens import z_pen_of
 from daemon.machine.file_drop import FileDrop
-from daemon.machine.open import Conversation, open_machine
+from daemon.machine.open import Conversation, Record, open_machine
 from daemon.machine.serial_port import Framing
 from daemon.machine.simulated import simulator_by
 from daemon.program.emco import stop_lines, write_emco
@@ -46,23 +46,27 @@ def times_s(lines: list[str]) -> list[float]:
     return line_times_s(lines)
 
 
-def opened(machine: EmcoMachine, hear: Callable[[Event], None], *, still: bool) -> OpenMachine:
+def opened(machine: EmcoMachine, hear: Callable[[Event], None], *, still: bool, record: Record) -> OpenMachine:
     if machine.link == "file":
         return FileMachine(Path(urlsplit(machine.url).path), heard=hear)
     line = FORMATS[machine.preset]
-    conversation = Conversation(
+    return open_machine(
+        machine.url,
+        conversation(machine, still=still),
+        framing=Framing(machine.baud, line.bits, _PARITY[line.parity], line.stop),
+        simulate=lambda: _simulated(machine),
+        heard=hear,
+        record=record,
+    )
+
+
+def conversation(machine: EmcoMachine, *, still: bool) -> Conversation[XonXoffSession | BlockSession]:
+    return Conversation(
         lambda now: _session(machine, now),
         lambda session, lines: line_times_s(lines),
         lambda session, program: [
             f"link: {machine.link}, {machine.preset} at {machine.baud} baud; nothing is said back"
         ],
-    )
-    return open_machine(
-        machine.url,
-        conversation,
-        framing=Framing(machine.baud, line.bits, _PARITY[line.parity], line.stop),
-        simulate=lambda: _simulated(machine),
-        heard=hear,
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from daemon.config import GrblMachine, ZPenSettings
 from daemon.jobs.moves import GrblMoves
 from daemon.jobs.pens import pen_of
-from daemon.machine.open import Conversation, OpenedMachine, open_machine
+from daemon.machine.open import Conversation, OpenedMachine, Record, open_machine
 from daemon.machine.ports import find_grbl
 from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_of
@@ -42,13 +42,16 @@ def times_s(lines: list[str]) -> list[float]:
     return _times(lines, {})
 
 
-def opened(machine: GrblMachine, hear: Callable[[Event], None], *, still: bool) -> OpenedMachine[GrblSession]:
+def opened(
+    machine: GrblMachine, hear: Callable[[Event], None], *, still: bool, record: Record
+) -> OpenedMachine[GrblSession]:
     return open_machine(
         machine.url if machine.url != "auto" else find_grbl(adapters(), on_usb=inventory().ids),
-        _conversation(machine, home=machine.home != "never" and not still),
+        conversation(machine, still=still),
         framing=Framing(machine.baud),
         simulate=lambda: simulator_of(machine.url, pen=touches(machine)),
         heard=hear,
+        record=record,
     )
 
 
@@ -77,14 +80,14 @@ def moved(line: str, by_mm: tuple[float, float]) -> str:
     return re.sub(r"([XY])(-?[\d.]+)", lambda found: f"{found[1]}{float(found[2]) + more_mm[found[1]]:.3f}", line)
 
 
-def _conversation(machine: GrblMachine, *, home: bool) -> Conversation[GrblSession]:
+def conversation(machine: GrblMachine, *, still: bool) -> Conversation[GrblSession]:
     return Conversation(
         lambda now: GrblSession(
             now=now,
             flow=machine.flow,
             lift=lift_lines(pen_of(machine.pen)),
             lift_after_restart=machine.lift_after_restart,
-            home=home,
+            home=machine.home != "never" and not still,
             may_set=machine.may_set,
             dry_run=machine.dry_run,
             patience=Patience(motors_off_after_min=machine.motors_off_after_min),

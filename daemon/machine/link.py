@@ -6,9 +6,10 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from typing import Protocol, runtime_checkable
+from typing import Literal, Protocol, runtime_checkable
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
+from daemon.machine.recorder import Kind, Recorder
 from daemon.machine.transport import Transport
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.session import Ended, Event, JobLine, NotReady, PausableSession, Ready, Session
@@ -27,16 +28,25 @@ class Link:
     from others.
 
     heard: is given every event, in order, in the calling thread; it must not call back.
+    recorder: writes everything down.
     A link whose job ended by a fault is over: close it and make a new one.
     """
 
-    def __init__(self, transport: Transport, session: Session, *, heard: Callable[[Event], None]) -> None:
+    def __init__(
+        self,
+        transport: Transport,
+        session: Session,
+        *,
+        heard: Callable[[Event], None],
+        recorder: Recorder | None = None,
+    ) -> None:
         self._transport = transport
         self._session = session
         self._heard = heard
+        self._recorder = recorder
         self._stop_asked = threading.Event()
         self._woken = threading.Event()
-        self._wishes: deque[Callable[[_Pausable, float], None]] = deque()
+        self._wishes: deque[tuple[Literal["pause", "resume"], bool | None]] = deque()
 
     def connect(self) -> Ready:
         """Wait until the machine takes a job.
@@ -60,8 +70,11 @@ class Link:
         until the pen is up, and is raised again; a second one gives up waiting. Raises MachineFault when no job can be
         started, or an interrupted one does not end.
         """
+        now = self._transport.now()
+        if self._recorder:
+            self._recorder.started(now, lines)
         try:
-            self._session.start(lines, self._transport.now())
+            self._session.start(lines, now)
         except LocalProtocolError as fault:
             raise MachineFault(f"{self._transport.name}: {fault}") from fault
         try:
@@ -92,6 +105,13 @@ class Link:
         self._woken.set()
         self._transport.wake()
 
+    def home(self, begin: Callable[[float], None]) -> Ready:
+        """Have the session find the machine's home, by its own way `begin`. Raises as `connect` does."""
+        now = self._transport.now()
+        self._record(now, "home")
+        begin(now)
+        return self.connect()
+
     def stop(self) -> None:
         """End the drawing that is under way, pen up. Callable from any thread, returns at once."""
         self._stop_asked.set()
@@ -99,16 +119,16 @@ class Link:
 
     def pause(self, *, at_once: bool) -> None:
         """Stand still with the pen up; `Paused` is heard then. Raises LinedrawError where the session cannot."""
-        self._wish(lambda session, now: session.pause(now, at_once=at_once))
+        self._wish("pause", at_once)
 
     def resume(self) -> None:
         """Go on, if it stands still. Raises LinedrawError where the session cannot."""
-        self._wish(lambda session, now: session.resume(now))
+        self._wish("resume")
 
-    def _wish(self, act: Callable[[_Pausable, float], None]) -> None:
+    def _wish(self, kind: Literal["pause", "resume"], at_once: bool | None = None) -> None:
         if not isinstance(self._session, _Pausable):
             raise LinedrawError(f"{self._transport.name} cannot be paused from here: use the machine's own feed hold")
-        self._wishes.append(act)
+        self._wishes.append((kind, at_once))
         self._transport.wake()
 
     def close(self) -> None:
@@ -129,14 +149,26 @@ class Link:
     def _do_what_was_asked(self) -> None:
         now = self._transport.now()
         while self._wishes and isinstance(self._session, _Pausable):
+            kind, at_once = self._wishes.popleft()
+            self._record(now, kind, at_once)
             # What stands still no longer, or never did, has nothing to go on with.
             with suppress(LocalProtocolError):
-                self._wishes.popleft()(self._session, now)
+                if kind == "pause":
+                    self._session.pause(now, at_once=bool(at_once))
+                else:
+                    self._session.resume(now)
         if self._stop_asked.is_set():
+            self._record(now, "stop")
             self._session.stop(now)
 
+    def _record(self, now: float, kind: Kind, value: bool | None = None) -> None:
+        if self._recorder:
+            self._recorder.asked(now, kind, value)
+
     def _ended_by_unplugging(self) -> Ended:
-        for event in self._session.unplugged(self._transport.now()):
+        now = self._transport.now()
+        self._record(now, "unplugged")
+        for event in self._session.unplugged(now):
             self._heard(event)
             if isinstance(event, Ended):
                 return event
@@ -150,7 +182,10 @@ class Link:
             yield None
             now = self._transport.now()
             events = [*self._session.receive(data, now), *self._session.expire(now)]
-            fault = self._write(self._session.data_to_send(now))
+            said = self._session.data_to_send(now)
+            if self._recorder:
+                self._recorder.turned(now, data, said, events)
+            fault = self._write(said)
             for event in events:
                 self._heard(event)
                 yield event

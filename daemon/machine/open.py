@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Generic, TypeAlias, TypeVar
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeAlias, TypeVar
 
 from daemon.errors import LinedrawError
 from daemon.machine.link import Link
+from daemon.machine.recorder import Recorder
 from daemon.machine.serial_port import Framing, open_serial
 from daemon.machine.simulated import SimulatedTransport, way_to
 from daemon.machine.transport import Transport
@@ -50,14 +51,35 @@ class Conversation(Generic[S]):
     rests: Callable[[S], str] = lambda session: ""
 
 
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Where everything is written down (None: nowhere), and the settings that stand at its beginning."""
+
+    recorder: Recorder | None = None
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+NO_RECORD = Record()
+
+
 class OpenedMachine(Generic[S]):
     """A machine whose port is open. Only `stop`, `pause` and `resume` may be called from other threads."""
 
-    def __init__(self, transport: Transport, conversation: Conversation[S], *, heard: Callable[[Event], None]) -> None:
+    def __init__(
+        self,
+        transport: Transport,
+        conversation: Conversation[S],
+        *,
+        heard: Callable[[Event], None],
+        record: Record = NO_RECORD,
+    ) -> None:
         self._transport, self._conversation = transport, conversation
-        self.session = conversation.session(transport.now())
+        now = transport.now()
+        self.session = conversation.session(now)
         self._heard = heard
-        self._link = Link(transport, self.session, heard=self._hear)
+        if record.recorder:
+            record.recorder.opened(now, record.settings)
+        self._link = Link(transport, self.session, heard=self._hear, recorder=record.recorder)
         self._polylines_taken = 0
         self._corner_mm: PlaceMm = (0.0, 0.0)
         self._position_mm: Vector | None = None
@@ -128,8 +150,8 @@ class OpenedMachine(Generic[S]):
         """Find the machine's home, by the session itself or by this program. Raises NoMachine and MachineFault."""
         if self._conversation.home is None:
             return self.draw(program)
-        self._conversation.home(self.session, self._transport.now())
-        self._link.connect()
+        begin = self._conversation.home
+        self._link.home(lambda now: begin(self.session, now))
         return Ended(Verdict.FINISHED, 0, 0, position_known=True, pen_lifted=True, why="the machine is homed")
 
     def check(self, program: Program) -> Sequence[str]:
@@ -179,6 +201,7 @@ def open_machine(
     framing: Framing,
     simulate: Callable[[], Simulator],
     heard: Callable[[Event], None],
+    record: Record = NO_RECORD,
 ) -> OpenedMachine[S]:
     """Open the port and prepare the conversation; nothing has been said yet.
 
@@ -186,4 +209,4 @@ def open_machine(
     the drawing thread. Raises NoMachine, and SettingsError for a simulated machine that there is not.
     """
     transport = way_to(simulate(), url) if url.startswith("sim://") else open_serial(url, framing=framing)
-    return OpenedMachine(transport, conversation, heard=heard)
+    return OpenedMachine(transport, conversation, heard=heard, record=record)
