@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 from itertools import pairwise
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.grbl.states import State
 from firmware_protocol.session import Ended, Event
 from tests.firmware_protocol.grbl.driver import ALARM, BANNER, HELD, IDLE, LIFT, RUN, Play, ready, two_strokes
@@ -88,3 +91,50 @@ def test_a_job_without_further_words_ends_by_itself(script: bytes) -> None:
     play.hear(script)
     play.wait(30.0)
     assert play.session.state is State.LOST
+
+
+WISHES = {
+    "stop": lambda play: play.stop(),
+    "pause": lambda play: play.session.pause(play.now),
+    "halt": lambda play: play.session.pause(play.now, at_once=True),
+    "resume": lambda play: play.session.resume(play.now),
+    "home": lambda play: play.session.home(play.now),
+    "origin": lambda play: play.session.set_origin(play.now),
+    "faster": lambda play: play.session.set_feed_percent(150, play.now),
+    "start": lambda play: play.start(*two_strokes()),
+    "unplug": lambda play: play.events.extend(play.session.unplugged(play.now)),
+}
+MORE = st.sampled_from(
+    ["$1=25", "$10=1", "<Hold:0>", "<Check>", "<Door:1>", "<Idle|Bf:0,100|Ov:50,100,100>", "<Run|Ln:3>"]
+)
+
+
+@settings(max_examples=300)
+@given(
+    st.lists(
+        st.one_of(SCRIPTS, st.lists(MORE, max_size=4), st.floats(0.0, 7.0), st.sampled_from(sorted(WISHES))),
+        max_size=30,
+    ),
+    st.booleans(),
+    st.booleans(),
+)
+def test_whatever_is_wished_and_said_nothing_raises_but_what_is_not_allowed_now(
+    course: list[bytes | list[str] | float | str], may_set: bool, dry_run: bool
+) -> None:
+    play = ready(lift=LIFT, may_set=may_set, dry_run=dry_run, motors_off_after_min=0.1)
+    jobs = 0
+    for step in course:
+        if isinstance(step, bytes):
+            play.hear(step)
+        elif isinstance(step, list):
+            play.say(*step)
+        elif isinstance(step, float):
+            play.wait(step)
+        else:
+            with contextlib.suppress(LocalProtocolError):
+                WISHES[step](play)
+                jobs += step == "start"
+        deadline = play.session.deadline()
+        assert deadline is None or math.isfinite(deadline)
+    assert b"$X" not in play.sent
+    assert sum(isinstance(event, Ended) for event in play.events) <= jobs

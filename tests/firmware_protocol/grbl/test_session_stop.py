@@ -203,3 +203,30 @@ def test_no_banner_after_the_reset_is_silence() -> None:
     play.say(HELD)
     play.wait(5.0)
     assert (play.ended.verdict, play.ended.position_known) == (Verdict.SILENT, False)
+
+
+def test_a_build_that_reports_line_numbers_gets_them_and_tells_what_is_drawn() -> None:
+    play = Play(lift=LIFT)
+    for lines in ((BANNER,), (IDLE,), ("[VER:1.1h:]", "[OPT:VN,14,128]", "ok"), ("$1=255", "ok")):
+        play.say(*lines)
+    play.events.clear()
+    assert play.start(*[Line(f"X{n:02}", n) for n in range(50)]).startswith(b"?N1X00\nN2X01\n")
+    play.say(*["ok"] * 15)
+    play.say("<Run|MPos:11.500,0.000,0.000|FS:0,0|Ln:13>")
+    play.say("ALARM:1")
+    assert (play.ended.strokes_certain, play.ended.strokes_possible) == (12, play.sent.count(b"N"))
+
+
+def test_the_line_number_in_the_hold_names_the_line_that_was_cut() -> None:
+    play = Play(lift=LIFT)
+    for lines in ((BANNER,), (IDLE,), ("[VER:1.1h:]", "[OPT:VN,14,128]", "ok"), ("$1=255", "ok")):
+        play.say(*lines)
+    play.events.clear()
+    # There and back on one line: the place alone would leave open which of the moves was cut.
+    play.start(*[Line(f"X{n % 2}9", n) for n in range(50)])
+    play.say(*["ok"] * 10)
+    play.stop()
+    play.say("<Hold:0|MPos:15.000,0.000,0.000|FS:0,0|Ln:6>")
+    play.say(BANNER)
+    lift(play)
+    assert (play.ended.strokes_certain, play.ended.strokes_possible) == (5, 6)
