@@ -34,6 +34,8 @@ def test_every_network_of_the_table_is_trained_and_printed(
         "4",
         "--out",
         str(tmp_path / "r"),
+        "--threads",
+        "1",
     ]
     assert compare.main(["--run", *options]) == 0
     results = json.loads((tmp_path / "results.json").read_text())
