@@ -194,11 +194,6 @@ class Conversation:
                 return self.habits.stands_s + float(running.values[0]) / 1000
         return self.habits.stands_s
 
-    @property
-    def poll_due(self) -> bool:
-        """It is time to ask how far the queue is."""
-        return self.now >= self.next_poll
-
     # -- the states --
 
     def _enter(self, turn: Turn) -> None:

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 
 REST_S = 1.0
 """Between two looks at the alarms while nothing is drawn."""
+FEEDING_S = 0.075
+"""So much later it is asked how far the queue is while there are lines to send and room for them."""
+EMPTY_WITHIN_S = 10.0
+"""For the last command, in any case a way with the pen up, to leave the queue."""
 NEAR_MM = 0.05
 """So near to its target the arm has reached it."""
 
@@ -79,14 +83,15 @@ def draw(talk: Conversation) -> Script:
     talk.first_line = job.taken - talk.queue.accepted
     talk.progressed()
     while not (job.fed and talk.queue.ahead == 0):
-        if talk.poll_due:
+        may_feed = talk.queue.room and not job.fed
+        # On a slow way the line that can be sent goes before the question how far the arm is.
+        if talk.now >= talk.next_poll + (FEEDING_S if may_feed else 0.0):
             yield from poll(talk)
-        else:
+        elif may_feed:
             yield from _feed(talk)
-    while talk.queue.unknown and (yield Ask(question("LeftSpace")))[0] < talk.queue.depth:
-        # Which command the last acknowledgement belongs to is not certain: done is what leaves the queue empty.
-        yield from poll(talk)
-        yield Wait(talk.next_poll)
+        else:
+            yield Wait(talk.next_poll)
+    yield from _empty(talk)
     yield from _lift(talk)
     raise Turn(Signal.COMPLETE if job.taken == len(job) else Signal.STAND)
 
@@ -140,6 +145,16 @@ def _is_at(place: Vector, reached: Command) -> bool:
     return math.dist(place, target) <= NEAR_MM
 
 
+def _empty(talk: Conversation) -> Script:
+    """Where an acknowledgement was lost it is not certain to which command the last index belongs: wait for 247."""
+    until = talk.now + EMPTY_WITHIN_S
+    while talk.queue.unknown and (yield Ask(question("LeftSpace")))[0] < talk.queue.depth:
+        if talk.now >= until:
+            raise Turn(Signal.STUCK, sentences.stuck(EMPTY_WITHIN_S, len(talk.job)))
+        yield from poll(talk)
+        yield Wait(talk.next_poll)
+
+
 def _back_to_the_cut(talk: Conversation) -> Script:
     """Above the place where a stroke was cut, and down to it."""
     cut, talk.cut = talk.cut, None
@@ -167,13 +182,9 @@ def _put_move(talk: Conversation, place: Vector) -> Script:
 
 
 def _feed(talk: Conversation) -> Script:
-    """The next line, if there is room for one."""
     job, line = talk.job, talk.job.taken
     if talk.usually_left_over is None and talk.queue.ahead:
         yield from learn_left_over(talk)
-    if job.fed or not talk.queue.room:
-        yield Wait(talk.next_poll)
-        return
     talk.lifted = False
     job.sends()
     yield from put(talk, job.commands[line], job.text(line), number=line + 1)

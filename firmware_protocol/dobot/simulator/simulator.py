@@ -176,7 +176,7 @@ class DobotSimulator:
                     data = b""
                 case DelayReply(index, answers, by_s) if (index, answers) == (number, not ack):
                     late_s = by_s
-                case CorruptReply(index, answers, bits) if (index, answers) == (number, not ack):
+                case CorruptReply(index, answers, bits) if data and (index, answers) == (number, not ack):
                     data = data[:-2] + bytes([data[-2] ^ bits]) + data[-1:]
                 case StrayByte(index, answers) if (index, answers) == (number, not ack):
                     data = b"\xaa" + data
