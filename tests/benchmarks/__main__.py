@@ -10,9 +10,15 @@ os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "ORT_DISABLE
 
 
 def main() -> None:
-    from tests.benchmarks import done, memory, stages, streaming  # noqa: PLC0415
+    from tests.benchmarks import dobot, done, memory, stages, streaming  # noqa: PLC0415
 
-    known = {"stages": stages.show, "streaming": streaming.show, "done": done.show, "memory": memory.show}
+    known = {
+        "stages": stages.show,
+        "streaming": streaming.show,
+        "dobot": dobot.show,
+        "done": done.show,
+        "memory": memory.show,
+    }
     wanted = sys.argv[1:] or list(known)
     if unknown := set(wanted) - known.keys():
         raise SystemExit(f"no benchmark is called {', '.join(sorted(unknown))}: choose from {', '.join(known)}")
