@@ -22,6 +22,7 @@ from daemon.vision.segmenter import MODELS, load_manifest, open_model
 from training import quickdraw
 from training.canvas import Canvases
 from training.measure import CLASSES, Confusion
+from training.pictures import corners_of
 from training.render import CORNERS, UNSURE, Sample, reference
 
 Label = NDArray[np.uint8]
@@ -136,7 +137,9 @@ def curved_pages(files: Sequence[Path], limit: int | None, *, worn: float) -> It
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--model", type=Path, help="an .onnx file or a checkpoint; default: the shipped network")
-    parser.add_argument("--data", type=Path, nargs="+", required=True, help="Quick, Draw! ndjson, simplified form")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--data", type=Path, nargs="+", help="Quick, Draw! ndjson, simplified form")
+    what.add_argument("--pictures", type=Path, nargs="+", help="any pictures: the largest patch painted as a corner")
     parser.add_argument("--raw", type=Path, nargs="+", help="raw form: curved pages are measured too, clean and worn")
     parser.add_argument("--limit", type=int, help="only the first N rows")
     parser.add_argument("--threads", type=int, default=1)
@@ -145,6 +148,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     model = given.model or MODELS / load_manifest().file
     label_of = labeller(model, threads=given.threads)
+    if given.pictures:
+        print_corners(given.pictures, label_of)
+        return 0
     score = evaluate(label_of, reference_pages(given.data, given.limit))
     if not given.json:
         print_table(score)
@@ -165,6 +171,14 @@ def keep_figures(manifest: Path, summary: dict[str, object], given: argparse.Nam
     values = json.loads(manifest.read_text())
     values["figures"] = {"command": " ".join(["python -m training.evaluate", *words]), **summary}
     manifest.write_text(json.dumps(values, indent=1) + "\n")
+
+
+def print_corners(pictures: Sequence[Path], label_of: Callable[[NDArray[np.float32]], Label]) -> None:
+    """Components of the corners channel of each picture and the largest one's pixels at 3 px line width."""
+    print(f"{'picture':24} {'line px':>8} {'corners':>8} {'largest px':>11}")
+    for picture in pictures:
+        found = corners_of(picture, label_of, load_manifest().tile_px)
+        print(f"{found.name:24} {found.line_width_px:8.2f} {found.components:8} {found.largest_px:11.0f}")
 
 
 def print_table(score: Score) -> None:
