@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import signal
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import parse_qsl, urlsplit
 
 from daemon.cli import simulate_ctl
-from daemon.errors import DiskTrouble, SettingsError
-from daemon.machine.pseudo_terminal import serve
+from daemon.errors import SettingsError
+from daemon.machine.pseudo_terminal import serve, write_ink
 from daemon.machine.simulated import simulator_of
 from firmware_protocol.dobot.simulator.options import simulator_from as dobot_from
-from firmware_protocol.emco.simulator import simulator_from as emco_from
-from firmware_protocol.ink import Polyline
+from firmware_protocol.emco.simulator.simulator import simulator_from as emco_from
 from firmware_protocol.simulator import Simulator
 
 _MACHINES = {
@@ -75,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"simulated {args.machine} at {args.pty}, Ctrl-C ends it", flush=True)
         serve(simulator, args.pty, stop_fd=stop_fd)
     if args.ink:
-        _write_ink(args.ink, simulator.ink)
+        write_ink(args.ink, simulator)
     return 0
 
 
@@ -103,10 +101,3 @@ def _stop_on_signals() -> Iterator[int]:
             signal.signal(number, handler)
         os.close(read_fd)
         os.close(write_fd)
-
-
-def _write_ink(path: Path, polylines: Sequence[Polyline]) -> None:
-    try:
-        path.write_text(json.dumps({"polylines_mm": list(polylines)}) + "\n")
-    except OSError as error:
-        raise DiskTrouble(f"{path} cannot be written ({error.strerror}): choose another place for the ink") from error

@@ -19,7 +19,7 @@ _EXAMPLE = """what can happen: (N counts from 0, which is the next one; a place 
   lose ok [N]                       slow usb 16 ms
   hang                              brown-out
   unplug                            plug in
-  unsaid alarm
+  unsaid alarm                      ink to FILE (what has been drawn so far, as JSON in mm)
 """
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import pty
 import select
@@ -10,12 +11,13 @@ import time
 import tty
 from pathlib import Path
 
-from daemon.errors import SettingsError
+from daemon.errors import DiskTrouble, SettingsError
 from daemon.machine.simulator_control import SAID, ControlSocket
 from firmware_protocol.simulator import Eventful, Simulator
 
 _LOOK_S = 0.01
 """How often to look for a client: the kernel wakes nobody when the other end is opened."""
+_INK_TO = "ink to "
 
 
 def serve(simulator: Simulator, link: Path, *, stop_fd: int) -> None:
@@ -34,6 +36,20 @@ def serve(simulator: Simulator, link: Path, *, stop_fd: int) -> None:
             terminal.unplug()
     finally:
         control.close()
+
+
+def write_ink(path: Path, simulator: Simulator) -> None:
+    """What is on the sheet, and where the pen is (null where the simulator does not say), as JSON in mm, whole at once.
+
+    Raises DiskTrouble when it cannot be written.
+    """
+    pen_mm = getattr(simulator, "position_mm", None)
+    part = path.with_name(path.name + ".part")
+    try:
+        part.write_text(json.dumps({"polylines_mm": list(simulator.ink), "pen_mm": pen_mm}) + "\n", encoding="ascii")
+        part.replace(path)
+    except OSError as error:
+        raise DiskTrouble(f"{path} cannot be written ({error.strerror}): choose another place for the ink") from error
 
 
 class _Terminal:
@@ -126,11 +142,20 @@ class _Bench:
         self._control.answer(connection, self._happened(sentence))
 
     def _happened(self, sentence: str) -> str:
+        if sentence.startswith(_INK_TO):
+            return self._ink_to(Path(sentence.removeprefix(_INK_TO)))
         if not isinstance(self._simulator, Eventful):
             return "nothing can happen to this simulated machine at run time: ask for it when it is started"
         try:
             self._simulator.happen(sentence, self._now())
         except ValueError as error:
+            return str(error)
+        return SAID
+
+    def _ink_to(self, path: Path) -> str:
+        try:
+            write_ink(path, self._simulator)
+        except DiskTrouble as error:
             return str(error)
         return SAID
 

@@ -45,7 +45,7 @@ def test_sigterm_ends_it_cleanly_and_the_ink_is_written(machine: str, tmp_path: 
     before = signal.getsignal(signal.SIGTERM)
     stop_when(link)
     assert simulate.run(parse("--pty", str(link), "--ink", str(ink), machine=machine)) == 0
-    assert json.loads(ink.read_text()) == {"polylines_mm": []}
+    assert json.loads(ink.read_text())["polylines_mm"] == []
     assert not link.is_symlink()
     assert signal.getsignal(signal.SIGTERM) is before
 
@@ -93,6 +93,11 @@ def test_an_event_is_told_in_words_with_or_without_quotes(tmp_path: Path) -> Non
         assert not simulator.unplugged
         assert main(["simulate", "ctl", str(link), "switch x closes at -4.000 mm"]) == 0
         assert main(["simulate", "ctl", str(link), "explode"]) == MachineFault.exit_code
+        assert main(["simulate", "ctl", str(link), f"ink to {tmp_path / 'ink.json'}"]) == 0
+        assert json.loads((tmp_path / "ink.json").read_text()) == {"polylines_mm": [], "pen_mm": [0, 0, 0]}
+        assert (
+            main(["simulate", "ctl", str(link), f"ink to {tmp_path / 'none' / 'ink.json'}"]) == MachineFault.exit_code
+        )
     finally:
         os.write(stop, b"!")
         thread.join(5)
