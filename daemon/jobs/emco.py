@@ -12,6 +12,7 @@ from daemon.jobs.moves import NoMoves
 from daemon.jobs.open_machine import OpenMachine
 from daemon.jobs.pens import z_pen_of
 from daemon.machine.file_drop import FileDrop
+from daemon.machine.link import Promise, promise_nothing
 from daemon.machine.open import Conversation, Record, open_machine
 from daemon.machine.serial_port import Framing
 from daemon.machine.simulated import simulator_by
@@ -19,11 +20,11 @@ from daemon.program.emco import stop_lines, write_emco
 from daemon.shapes import Program, Toolpath
 from firmware_protocol.emco.dialects import DIALECTS
 from firmware_protocol.emco.line_format import FORMATS
-from firmware_protocol.emco.motion import line_times_s
+from firmware_protocol.emco.simulator.motion import line_times_s
 from firmware_protocol.emco.session import BlockSession, Control, XonXoffSession
-from firmware_protocol.emco.simulator import EmcoSimulator, simulator_from
+from firmware_protocol.emco.simulator.simulator import EmcoSimulator, simulator_from
 from firmware_protocol.ink import PenRule, Vector
-from firmware_protocol.session import Ended, Event
+from firmware_protocol.session import Ended, Event, Verdict
 from firmware_protocol.simulator import Simulator
 
 _WHOLE = "an EMCO takes whole programs only: move it at its control"
@@ -81,6 +82,14 @@ def moves_of(machine: EmcoMachine) -> NoMoves:
 
 class FileMachine(FileDrop):
     """A folder takes programs, and nothing else that a person may ask of a machine."""
+
+    def draw(self, program: Program, promise: Promise = promise_nothing) -> Ended:
+        """The whole program is handed over at once, so all of it is promised first."""
+        try:
+            promise(program.strokes, 0)
+        except LinedrawError as error:
+            return Ended(Verdict.STOPPED, 0, 0, position_known=True, pen_lifted=False, why=str(error))
+        return super().draw(program)
 
     @property
     def rests(self) -> str:

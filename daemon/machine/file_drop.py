@@ -13,7 +13,7 @@ from daemon.errors import MachineFault, NoMachine
 from daemon.shapes import Program
 from firmware_protocol.emco.conversation import SETTLE_S
 from firmware_protocol.emco.dialects import program_name
-from firmware_protocol.emco.motion import line_times_s
+from firmware_protocol.emco.simulator.motion import line_times_s
 from firmware_protocol.errors import ProtocolError
 from firmware_protocol.ink import Polyline
 from firmware_protocol.session import Ended, Event, Ready, Sent, Verdict

@@ -107,6 +107,17 @@ class BlockSession:
         self._talk.go(Signal.UNPLUG, sentences.UNPLUGGED)
         return self._talk.told()
 
+    @property
+    def strokes_touched(self) -> int:
+        """See `Session.strokes_touched`."""
+        job = self._talk.job
+        return 0 if job is None else job.touched(most=1)
+
+    @property
+    def strokes_certain(self) -> int:
+        """See `Session.strokes_certain`."""
+        return 0 if self._talk.job is None else self._talk.job.certain
+
     def _answered(self, answer: Answer) -> None:
         if self._talk.state not in SENDING or not self._owed or self._again:
             return

@@ -62,6 +62,19 @@ class Job:
         """How long the control moves for this block."""
         return self._seconds[block] if block < self._cut else 0.0
 
+    @property
+    def certain(self) -> int:
+        """The first n strokes are certainly drawn."""
+        return strokes_before(self._strokes, min(self.proven, self._cut))
+
+    def touched(self, *, most: int) -> int:
+        """No stroke from this number on was taken, nor will be with the next `most` bytes."""
+        block, left = self.begun, most - len(self._rest)
+        while left > 0 and block < len(self.blocks):
+            left -= len(self.blocks[block])
+            block += 1
+        return strokes_touched(self._strokes, min(block, self._cut))
+
     def take(self, most: int) -> bytes:
         """The next `most` bytes at most, to be written now."""
         taken = b""
@@ -100,10 +113,9 @@ class Job:
 
     def ended(self, verdict: Verdict, why: str, *, estimated: bool = False) -> Ended:
         """Certain is what has been proven. estimated: by the time model all that was handed over is drawn."""
-        certain = strokes_before(self._strokes, min(self.proven, self._cut))
         possible = strokes_touched(self._strokes, min(self.begun, self._cut))
         return Ended(
-            verdict, min(certain, possible), possible,
+            verdict, min(self.certain, possible), possible,
             position_known=estimated, pen_lifted=estimated, why=why, estimated=estimated,
         )  # fmt: skip
 

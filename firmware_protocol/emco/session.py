@@ -131,6 +131,17 @@ class XonXoffSession:
         self._talk.go(Signal.UNPLUG, sentences.UNPLUGGED)
         return self._talk.told()
 
+    @property
+    def strokes_touched(self) -> int:
+        """See `Session.strokes_touched`."""
+        job = self._talk.job
+        return 0 if job is None else job.touched(most=self._chunk_bytes)
+
+    @property
+    def strokes_certain(self) -> int:
+        """See `Session.strokes_certain`."""
+        return 0 if self._talk.job is None else self._talk.job.certain
+
     def _heard(self, signal: Signal) -> None:
         talk = self._talk
         if talk.state is State.READY:

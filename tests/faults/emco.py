@@ -6,11 +6,21 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from firmware_protocol.emco.faults import AlarmInBlock, Fault, FlipBit, LoseAck, LoseXon, PowerCut, Reset, Stall, Unplug
 from firmware_protocol.emco.line_format import FORMATS
 from firmware_protocol.emco.session import Control
-from firmware_protocol.emco.setup import Setup
-from firmware_protocol.emco.simulator import EmcoSimulator
+from firmware_protocol.emco.simulator.faults import (
+    AlarmInBlock,
+    Fault,
+    FlipBit,
+    LoseAck,
+    LoseXon,
+    PowerCut,
+    Reset,
+    Stall,
+    Unplug,
+)
+from firmware_protocol.emco.simulator.setup import Setup
+from firmware_protocol.emco.simulator.simulator import EmcoSimulator
 from firmware_protocol.session import Ended, Verdict
 from tests.faults.row import Row, outcome_of
 from tests.firmware_protocol.emco.bench import Bench, Line, knowing, on_blocks, on_xonxoff, program

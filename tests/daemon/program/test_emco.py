@@ -17,7 +17,7 @@ from daemon.program.file import parse_program, program_text
 from daemon.program.gcode import ZPen
 from daemon.shapes import Points, Program, Stroke, Toolpath
 from firmware_protocol.emco.dialects import DIALECTS, DialectName
-from firmware_protocol.emco.interpreter import Interpreter, Room
+from firmware_protocol.emco.simulator.interpreter import Interpreter, Room
 from tests.daemon.program.examples import TOOLPATH
 from tests.daemon.toolpath.strokes import polylines
 

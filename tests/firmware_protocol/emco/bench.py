@@ -8,10 +8,10 @@ from typing import Any
 
 from firmware_protocol.emco.blocks import rapid, straight
 from firmware_protocol.emco.dialects import DIALECTS, DialectName
-from firmware_protocol.emco.motion import line_times_s
 from firmware_protocol.emco.session import BlockSession, Control, XonXoffSession
-from firmware_protocol.emco.setup import Setup
-from firmware_protocol.emco.simulator import EmcoSimulator
+from firmware_protocol.emco.simulator.motion import line_times_s
+from firmware_protocol.emco.simulator.setup import Setup
+from firmware_protocol.emco.simulator.simulator import EmcoSimulator
 from firmware_protocol.session import Ended, Event
 
 STROKES = 6

@@ -7,11 +7,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from firmware_protocol.emco.dialects import DialectName
-from firmware_protocol.emco.faults import AlarmInBlock, FlipBit, LoseAck, LoseXon, PowerCut, Reset, Stall, Unplug
 from firmware_protocol.emco.line_format import FORMATS, FormatName
 from firmware_protocol.emco.session import Control
-from firmware_protocol.emco.setup import Setup
-from firmware_protocol.emco.simulator import EmcoSimulator
+from firmware_protocol.emco.simulator.faults import (
+    AlarmInBlock,
+    FlipBit,
+    LoseAck,
+    LoseXon,
+    PowerCut,
+    Reset,
+    Stall,
+    Unplug,
+)
+from firmware_protocol.emco.simulator.setup import Setup
+from firmware_protocol.emco.simulator.simulator import EmcoSimulator
 from firmware_protocol.emco.states import State
 from firmware_protocol.session import Accepted, Ended, Sent, Verdict
 from tests.firmware_protocol.emco.bench import STROKES, Bench, end_lines, knowing, on_blocks, on_xonxoff, program

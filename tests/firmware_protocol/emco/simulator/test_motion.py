@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from firmware_protocol.emco.blocks import Alarm
-from firmware_protocol.emco.interpreter import Move
-from firmware_protocol.emco.motion import Clock, line_times_s
+from firmware_protocol.emco.simulator.interpreter import Move
+from firmware_protocol.emco.simulator.motion import Clock, line_times_s
 from tests.firmware_protocol.emco.bench import program
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from firmware_protocol.emco.axes import Axes
 from firmware_protocol.emco.blocks import Alarm
 from firmware_protocol.emco.dialects import FANUC
-from firmware_protocol.emco.interpreter import Interpreter
-from firmware_protocol.emco.receiver import Receiver
-from firmware_protocol.emco.setup import Setup
+from firmware_protocol.emco.simulator.axes import Axes
+from firmware_protocol.emco.simulator.interpreter import Interpreter
+from firmware_protocol.emco.simulator.receiver import Receiver
+from firmware_protocol.emco.simulator.setup import Setup
 from firmware_protocol.ink import PenRule
 
 XON, XOFF = b"\x11", b"\x13"

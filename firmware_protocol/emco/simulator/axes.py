@@ -6,8 +6,8 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 
-from firmware_protocol.emco.interpreter import Move
-from firmware_protocol.emco.motion import Clock
+from firmware_protocol.emco.simulator.interpreter import Move
+from firmware_protocol.emco.simulator.motion import Clock
 from firmware_protocol.ink import Ink, PenRule, Vector
 
 _NEVER = float("inf")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firmware_protocol.emco.axes import Axes
-from firmware_protocol.emco.interpreter import Move
+from firmware_protocol.emco.simulator.axes import Axes
+from firmware_protocol.emco.simulator.interpreter import Move
 from firmware_protocol.ink import PenRule
 
 FIRST, SECOND = Move((0, 0, 0), (10, 0, 0), 10.0), Move((10, 0, 0), (20, 0, 0), 10.0)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from firmware_protocol.emco.dialects import FANUC
-from firmware_protocol.emco.faults import AlarmInBlock, Stall, Unplug
 from firmware_protocol.emco.line_format import FORMATS
-from firmware_protocol.emco.setup import setup_from
-from firmware_protocol.emco.simulator import simulator_from
+from firmware_protocol.emco.simulator.faults import AlarmInBlock, Stall, Unplug
+from firmware_protocol.emco.simulator.setup import setup_from
+from firmware_protocol.emco.simulator.simulator import simulator_from
 from firmware_protocol.ink import PenRule
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from firmware_protocol.emco.blocks import Alarm, arc
 from firmware_protocol.emco.dialects import FANUC, SIEMENS
-from firmware_protocol.emco.interpreter import CHORD_MM, Interpreter, Move, Room
+from firmware_protocol.emco.simulator.interpreter import CHORD_MM, Interpreter, Move, Room
 from firmware_protocol.errors import ProtocolError
 
 ROOM = Room((0, 0, -100), (350, 250, 200), 15_000)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import cos, radians, sqrt
 
-from firmware_protocol.emco.interpreter import Interpreter, Move
+from firmware_protocol.emco.simulator.interpreter import Interpreter, Move
 from firmware_protocol.ink import Vector
 
 ACCELERATION_MM_S2 = 500.0

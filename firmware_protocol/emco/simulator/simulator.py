@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from firmware_protocol.emco.faults import (
+from firmware_protocol.emco.line_format import lower_seven, parity_is_even, with_even_parity
+from firmware_protocol.emco.simulator.faults import (
     AlarmInBlock,
     Fault,
     FlipBit,
@@ -16,9 +17,8 @@ from firmware_protocol.emco.faults import (
     Timed,
     Unplug,
 )
-from firmware_protocol.emco.line_format import lower_seven, parity_is_even, with_even_parity
-from firmware_protocol.emco.reading import BAD_PARITY, XOFF, XON, Reading
-from firmware_protocol.emco.setup import Setup, setup_from
+from firmware_protocol.emco.simulator.reading import BAD_PARITY, XOFF, XON, Reading
+from firmware_protocol.emco.simulator.setup import Setup, setup_from
 from firmware_protocol.ink import PenRule, Polyline, Vector
 
 _NEVER = float("inf")

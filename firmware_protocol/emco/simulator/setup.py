@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 from firmware_protocol.emco.dialects import DIALECTS, RAPID_MM_MIN, TRAVEL_MM, Dialect
-from firmware_protocol.emco.faults import (
+from firmware_protocol.emco.line_format import FORMATS, LineFormat
+from firmware_protocol.emco.simulator.faults import (
     AlarmInBlock,
     Fault,
     FlipBit,
@@ -18,8 +19,7 @@ from firmware_protocol.emco.faults import (
     Stall,
     Unplug,
 )
-from firmware_protocol.emco.interpreter import Room
-from firmware_protocol.emco.line_format import FORMATS, LineFormat
+from firmware_protocol.emco.simulator.interpreter import Room
 from firmware_protocol.ink import PenRule, Vector
 
 LinkName = Literal["xonxoff", "blocks"]

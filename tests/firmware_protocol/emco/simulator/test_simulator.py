@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from firmware_protocol.emco.dialects import FANUC
-from firmware_protocol.emco.faults import FlipBit, LoseXon, PowerCut, Reset, Stall, Unplug
 from firmware_protocol.emco.line_format import FORMATS
-from firmware_protocol.emco.setup import Setup
-from firmware_protocol.emco.simulator import EmcoSimulator, simulator_from
+from firmware_protocol.emco.simulator.faults import FlipBit, LoseXon, PowerCut, Reset, Stall, Unplug
+from firmware_protocol.emco.simulator.setup import Setup
+from firmware_protocol.emco.simulator.simulator import EmcoSimulator, simulator_from
 from firmware_protocol.ink import PenRule
 
 XON, XOFF = b"\x11", b"\x13"
