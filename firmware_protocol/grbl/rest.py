@@ -9,7 +9,6 @@ from typing import NamedTuple
 from firmware_protocol.gcode import format_line, format_number
 from firmware_protocol.grbl.moves import Arc, Move
 from firmware_protocol.grbl.path import Modal, Path, Spot, Step
-from firmware_protocol.grbl.replies import Triple
 
 OVERLAP_MM = 0.3
 """So much of the ink before a cut is drawn again: a pen that is lowered begins to write a little late."""
@@ -138,10 +137,9 @@ def _remainder(step: Step, part: float) -> str:
     move = step.move
     assert move is not None
     at = move.at(part)
-    # An arc whose ends are the same to three decimals would be drawn as a full circle.
-    arc = isinstance(move, Arc) and (part == 0.0 or _rounded(at) != _rounded(move.end))
-    words = [("G", step.after.motion if arc else 1), ("X", move.end[0]), ("Y", move.end[1])]
-    if isinstance(move, Arc) and arc:
+    # The overlap keeps the two ends of an arc apart; where they met it would be drawn as a full circle.
+    words = [("G", float(step.after.motion)), ("X", move.end[0]), ("Y", move.end[1])]
+    if isinstance(move, Arc):
         words += [("I", move.centre[0] - at[0]), ("J", move.centre[1] - at[1])]
     text = format_line(words)
     return f"{text} F{format_number(step.after.feed_mm_min)}" if step.after.feed_mm_min else text
@@ -153,7 +151,3 @@ def _ramps(move: Move | None) -> bool:
 
 def _moves_flat(move: Move) -> bool:
     return isinstance(move, Arc) or move.start[:2] != move.end[:2]
-
-
-def _rounded(place: Triple) -> tuple[float, float]:
-    return round(place[0], 3), round(place[1], 3)
