@@ -39,7 +39,9 @@ class Desk:
         show: Callable[..., None],
         asks_for_sheets: bool,
         ahead: int = 2,
+        rank: Callable[[str], Any] = lambda name: 0,
     ) -> None:
+        """rank: of a picture's name; the job of the lowest goes first, of equals the one that came first."""
         self.journal, self.folders, self.say, self.show = journal, folders, say, show
         self.ending = False
         self.only = ""
@@ -48,7 +50,7 @@ class Desk:
         """The daemon before this one was killed while it drew, so that nobody has lifted the pen."""
         self.changes = 0
         """Counts what has changed, so that a change between a look and a `wait` is not slept over."""
-        self._asks_for_sheets, self._ahead = asks_for_sheets, ahead
+        self._asks_for_sheets, self._ahead, self._rank = asks_for_sheets, ahead, rank
         self._cancelled: set[str] = set()
         self._troubled = ("", "")
         self._changed = threading.Condition(threading.RLock())
@@ -57,7 +59,7 @@ class Desk:
         """After a start: finish what the last daemon left half done. Nothing moves because of it."""
         self.folders.finish_claims(inbox)
         for job_id in self.folders.strays({job.id for job in self.journal.jobs()}):
-            self._add(job_id, job_id)
+            self.add(job_id, job_id)
         for job in self.journal.jobs(State.PLANNING):
             self.step(job.id, State.QUEUED, "the daemon ended while it was planning: it plans again")
         for job in self.journal.jobs(State.DRAWING):
@@ -74,13 +76,14 @@ class Desk:
 
     def take(self, picture: Path, name: str) -> None:
         """Make a job of a picture in the inbox. Raises DiskTrouble; it then still lies there."""
-        self._add(self.folders.take(picture), name)
+        self.add(self.folders.take(picture), name)
 
     def copy(self, picture: Path, name: str) -> str:
         """Make a job of a copy of the picture. Returns the job's id. Raises DiskTrouble and FileNotFoundError."""
-        return self._add(self.folders.copy(picture), name)
+        return self.add(self.folders.copy(picture), name)
 
-    def _add(self, job_id: str, name: str) -> str:
+    def add(self, job_id: str, name: str) -> str:
+        """Make a job of a folder that holds its picture. Returns its id. Raises DiskTrouble."""
         self.journal.add(job_id, name)
         self.say("the picture is queued", job=job_id, state=State.QUEUED.value, name=name)
         self._show_queue()
@@ -226,11 +229,11 @@ class Desk:
             self._changed.wait_for(lambda: self.ending or self.changes != seen, seconds)
 
     def _worked_on(self, *states: State) -> list[Job]:
-        return [job for job in self.journal.jobs(*states) if self.only in ("", job.id)]
+        jobs = [job for job in self.journal.jobs(*states) if self.only in ("", job.id)]
+        return sorted(jobs, key=lambda job: self._rank(job.name))
 
     def _show_queue(self) -> None:
-        waiting = len(self.journal.jobs(*_READY))
-        self.show(jobs_queued=len(self.journal.jobs(State.QUEUED)), jobs_waiting=waiting)
+        self.show(jobs_queued=self.journal.count(State.QUEUED), jobs_waiting=self.journal.count(*_READY))
         self._notify()
 
     def _notify(self) -> None:

@@ -7,7 +7,7 @@ import os
 import re
 import shutil
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -69,25 +69,29 @@ class JobFolders:
     def path(self, job_id: str) -> Path:
         return self.root / job_id
 
-    def take(self, picture: Path) -> str:
+    def take(self, picture: Path, beside: Mapping[str, bytes] | None = None) -> str:
         """Move the picture into a new job's folder and return the job's id.
 
         The move is one rename; where the inbox lies on another file system the picture is first hidden there, then
-        copied. Raises DiskTrouble, the picture is then still where it was, or FileNotFoundError when it has gone.
+        copied. beside: files by name that are in the folder before the picture is.
+        Raises DiskTrouble, the picture is then still where it was, or FileNotFoundError when it has gone.
         """
-        with self._new_folder(picture) as folder:
+        with self._new_folder(picture, beside or {}) as folder:
             try:
                 picture.rename(folder / _source_name(picture))
             except OSError as error:
                 if error.errno != errno.EXDEV:
                     raise
+                # Before the picture is hidden: after a power cut the folder of its job must be there.
+                sync_folder(folder)
+                sync_folder(self.root)
                 _take_from_elsewhere(picture, folder)
             sync_folder(picture.parent)
         return folder.name
 
-    def copy(self, picture: Path) -> str:
+    def copy(self, picture: Path, beside: Mapping[str, bytes] | None = None) -> str:
         """As `take`, but the picture stays where it is. Raises DiskTrouble and FileNotFoundError."""
-        with self._new_folder(picture) as folder:
+        with self._new_folder(picture, beside or {}) as folder:
             _copy_durably(picture, folder / _source_name(picture))
         return folder.name
 
@@ -95,8 +99,9 @@ class JobFolders:
         """Copy again what a power cut left hidden in an inbox on another file system."""
         for hidden in inbox.glob(f"{CLAIMED}*"):
             folder = self.path(hidden.name.removeprefix(CLAIMED))
-            if folder.is_dir() and source_of(folder) is None:
+            if source_of(folder) is None:
                 with _disk_trouble(folder):
+                    folder.mkdir(exist_ok=True)
                     _copy_durably(hidden, folder / _source_name(Path(folder.name)))
             if source_of(folder) is not None:
                 hidden.unlink()
@@ -110,10 +115,12 @@ class JobFolders:
         return [folder.name for folder in strays if source_of(folder) is not None]
 
     @contextmanager
-    def _new_folder(self, picture: Path) -> Iterator[Path]:
+    def _new_folder(self, picture: Path, beside: Mapping[str, bytes]) -> Iterator[Path]:
         with _disk_trouble(self.root):
             folder = self._make(picture.stem)
             try:
+                for name, data in beside.items():
+                    _write_beside(folder / name, data)
                 yield folder
                 sync_folder(folder)
                 sync_folder(self.root)

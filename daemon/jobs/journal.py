@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -44,6 +45,7 @@ class Journal:
     def __init__(self, path: Path, *, now: Callable[[], float] = time.time) -> None:
         self._path, self._now, self._lock = path, now, threading.RLock()
         self._jobs: dict[str, Job] = {}
+        self._counts: Counter[State] = Counter()
         self.sheet_used, self.held = False, ""
         try:
             self._rows = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
@@ -71,6 +73,11 @@ class Journal:
         """The jobs in one of these states (none given: all), in the order in which they came."""
         with self._lock:
             return [job for job in self._jobs.values() if not states or job.state in states]
+
+    def count(self, *states: State) -> int:
+        """How many jobs are in one of these states, without looking at each."""
+        with self._lock:
+            return sum(self._counts[state] for state in states)
 
     def job(self, job_id: str) -> Job | None:
         with self._lock:
@@ -126,6 +133,9 @@ class Journal:
     def _remember(self, at_s: float, job_id: str, state: str, words: str) -> Job:
         before = self._jobs.get(job_id, Job(job_id, words, State.QUEUED, "", at_s))
         said = "" if job_id not in self._jobs else words
+        self._counts[State(state)] += 1
+        if job_id in self._jobs:
+            self._counts[before.state] -= 1
         self._jobs[job_id] = replace(before, state=State(state), words=said, changed_s=at_s)
         self.sheet_used = self.sheet_used or state == State.DRAWING.value
         return self._jobs[job_id]

@@ -122,3 +122,32 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path: Path) -> None:
     with full_disk(10), pytest.raises(DiskTrouble):
         write_durably(tmp_path / "report.json", b"n" * 100)
     assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("report.json", b"old")]
+
+
+def test_a_hidden_picture_whose_folder_a_power_cut_has_taken_becomes_a_job_all_the_same(
+    tmp_path: Path, inbox: Path
+) -> None:
+    folders = JobFolders(tmp_path / "jobs")
+    drop(inbox, f"{CLAIMED}000001-a")
+    folders.finish_claims(inbox)
+    assert (folders.root / "000001-a" / "source").read_bytes() == b"picture"
+    assert list(inbox.iterdir()) == []
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_what_belongs_beside_a_picture_is_there_before_it(
+    tmp_path: Path, inbox: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folders = JobFolders(tmp_path / "jobs")
+    picture = drop(inbox, "a.png")
+    rename, found = Path.rename, []
+
+    def look_first(self: Path, target: Path) -> Path:
+        if Path(target).name.startswith(CLAIMED):
+            found.extend(path.name for path in (folders.root / "000001-a").iterdir())
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "rename", look_first)
+    job = folders.take(picture, {"side.toml": b"copies = 2"})
+    assert found == ["side.toml"]
+    assert sorted(path.name for path in folders.path(job).iterdir()) == ["side.toml", "source.png"]

@@ -94,3 +94,16 @@ def test_a_file_that_is_no_journal_is_refused_with_a_sentence(tmp_path: Path) ->
     (tmp_path / "j").write_bytes(b"not a database" * 100)
     with pytest.raises(DiskTrouble, match="cannot be opened"):
         Journal(tmp_path / "j")
+
+
+def test_jobs_are_counted_by_their_state(tmp_path: Path) -> None:
+    with closing(Journal(tmp_path / "journal.sqlite")) as journal:
+        for name in ("a", "b", "c"):
+            journal.add(name, name)
+        journal.step("a", State.PLANNING)
+        journal.step("a", State.PLANNED)
+        journal.step("b", State.CANCELLED)
+    with closing(Journal(tmp_path / "journal.sqlite")) as journal:
+        assert journal.count(State.QUEUED) == 1
+        assert journal.count(State.QUEUED, State.PLANNED) == 2
+        assert journal.count(State.PLANNING) == 0
