@@ -49,8 +49,8 @@ def tiles(inked: Inked, *, size_px: int, margin_px: int) -> Iterator[Tile]:
         if inked.any():
             yield Tile((width - size_px) // 2, (height - size_px) // 2, 0, 0, width, height)
         return
-    for top, core_top, core_bottom in _spans_of(inked.any(axis=1), size_px, margin_px):
-        band = inked[core_top:core_bottom].any(axis=0)
+    for top, core_top, core_bottom in _spans_of(np.asarray(np.any(inked, axis=1)), size_px, margin_px):
+        band = np.asarray(np.any(inked[core_top:core_bottom], axis=0))
         for left, core_left, core_right in _spans_of(band, size_px, margin_px):
             if band[core_left:core_right].any():
                 yield Tile(left, top, core_left, core_top, core_right, core_bottom)
