@@ -5,6 +5,9 @@ Raise one where the fact is known; `cli` turns it into an exit code and `jobs/ru
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Sequence
+
 
 class LinedrawError(Exception):
     """`str(error)` is a sentence that says what is wrong, where, and after the last colon what to do."""
@@ -48,3 +51,9 @@ class MachineFault(LinedrawError):
     """The machine refused, alarmed, restarted, fell silent or was unplugged."""
 
     exit_code = 4
+
+
+def unknown(where: str, key: str, known: Sequence[str]) -> str:
+    """The sentence about a key that is not known at this place: the one that was meant, or all there are."""
+    near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
+    return f"{where} is unknown: " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}")

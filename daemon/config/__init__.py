@@ -7,7 +7,7 @@ from daemon.config.machine import SIMULATED_GRBL, AnyMachine, DobotMachine, Emco
 from daemon.config.paths import Paths
 from daemon.config.pen import PenSettings, ServoPenSettings, ZPenSettings
 from daemon.config.section import Section
-from daemon.config.sheet import Intake, Planning, Sheet
+from daemon.config.sheet import Intake, Keep, Planning, Sheet
 
 __all__ = [
     "DEFAULT_MACHINE",
@@ -17,6 +17,7 @@ __all__ = [
     "EmcoMachine",
     "GrblMachine",
     "Intake",
+    "Keep",
     "Machine",
     "Options",
     "Paths",

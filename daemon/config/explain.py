@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
@@ -10,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from daemon.config.machine import DobotMachine, EmcoMachine, GrblMachine
 from daemon.config.pen import ServoPenSettings, ZPenSettings
+from daemon.errors import unknown
 
 Place: TypeAlias = tuple[int | str, ...]
 
@@ -27,8 +27,7 @@ def _one(loc: Place, kind: str, words: str, place: str, sections: Mapping[str, A
     where = f"{place}: [{'.'.join(section)}] {key}" if section else f"{place}: {key}"
     if kind == "extra_forbidden":
         known = _known_names(loc, sections)
-        near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
-        return f"{where} is unknown: " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}")
+        return unknown(where, key, known)
     return f"{where}: {words.removeprefix('Value error, ')}"
 
 

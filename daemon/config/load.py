@@ -15,7 +15,7 @@ from daemon.config.explain import explain
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine
 from daemon.config.paths import Paths, paths_of
 from daemon.config.section import Section
-from daemon.config.sheet import Intake, Planning, Sheet
+from daemon.config.sheet import Intake, Keep, Planning, Sheet
 from daemon.errors import SettingsError
 from daemon.places import usual_file
 
@@ -28,6 +28,7 @@ class Settings(Section):
 
     paths: Paths
     intake: Intake = Intake()
+    keep: Keep = Keep()
     planning: Planning = Planning()
     sheet: Sheet = Sheet()
     machines: dict[Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$")], AnyMachine]

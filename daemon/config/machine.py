@@ -34,6 +34,8 @@ class Machine(Section):
     resolution_mm: Annotated[float, Field(ge=0, le=1)] = 0.02
     """Shorter moves are not sent: the length of a few steps of the motors."""
     pen: PenSettings = ZPenSettings()
+    pen_life_m: Positive | None = None
+    """After so many metres of line the pen is worn, which is said; a file PEN in the inbox tells that it is new."""
     sheet: Literal["ask", "feed", "auto"] = "auto"
     """"ask": wait for a person after each drawing; "feed": draw on; "auto": feed on a simulated machine, else ask."""
 

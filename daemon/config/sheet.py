@@ -13,6 +13,26 @@ class Intake(Section):
     settle_s: Annotated[float, Field(ge=0, le=600)] = 1.0
     """How long size and time of a file must stay the same; three times as long where nobody said it was closed."""
     max_megapixels: Positive = 100.0
+    watch: Literal["events", "poll"] = "events"
+    """"poll" looks every poll_s: for a folder of another computer, whose changes nobody tells us."""
+    poll_s: Annotated[float, Field(ge=0.1, le=3600)] = 2.0
+    order: Literal["arrival", "name", "priority"] = "arrival"
+    """Which picture is drawn first; "priority": those whose names begin with a number and `-`, the lowest first."""
+    duplicates: Literal["draw", "skip"] = "draw"
+    """What becomes of a picture that is, byte for byte, that of another job."""
+
+
+class Keep(Section):
+    """How much is kept. Only jobs that are over are ever removed, the oldest first."""
+
+    jobs_days: Positive = 90.0
+    jobs_mb: Positive = 4000.0
+    free_mb: Annotated[float, Field(ge=0)] = 200.0
+    """With less free on the disk of the jobs no picture is taken any more."""
+    log_mb: Annotated[float, Field(ge=0.01)] = 10.0
+    """A log that has grown to this is set aside; a job's own log ends there."""
+    log_files: Annotated[int, Field(ge=1, le=100)] = 4
+    """How many that were set aside are kept."""
 
 
 class Planning(Section):
