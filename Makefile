@@ -18,7 +18,7 @@ CODE := daemon firmware_protocol training tests
 # onnxruntime reports home from its first import on unless this is set before it.
 export ORT_DISABLE_TELEMETRY := 1
 
-.PHONY: help demo test test-training test-system check format bench bench-fidelity generalisation peers clean
+.PHONY: help demo test test-training test-system check format bench bench-fidelity faults fuzz generalisation peers clean
 
 help: ## What there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -53,20 +53,26 @@ bench-fidelity: $(VENV)/runtime ## How close the strokes come, against the bars;
 	@$(BIN)/python -m tests.benchmarks.fidelity $(if $(QUICKDRAW),--quickdraw '$(QUICKDRAW)') \
 		$(if $(wildcard $(PEERS)/made),--peers)
 
+faults: $(VENV)/runtime ## Every fault of every simulated machine in three moments: what is said of it, and whether it is true
+	@$(BIN)/python -m tests.faults
+
+fuzz: $(VENV)/fuzz ## Random bytes into every parser, SECONDS_EACH (60) or BYTES (1e7) for each, whichever comes first
+	@$(BIN)/python -m tests.fuzz --seconds $(or $(SECONDS_EACH),60) --bytes $(or $(BYTES),1e7)
+
 generalisation: $(VENV)/runtime $(PEERS)/made ## docs/generalisation.png: our own drawings beside a rule-based tracer
 	@$(BIN)/python -m tests.benchmarks.fidelity.generalisation docs/generalisation.png
 
 peers: $(PEERS)/made ## Other people's tracers in .venv-peers, for bench-fidelity to compare with
 
 clean: ## Remove what was made, also the environments and demo
-	rm -rf $(VENV) $(PEERS) demo fidelity build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(PEERS) demo fidelity fuzz build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find $(CODE) -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/runtime: $(PINS) | $(VENV)/made
 	$(PIP) --editable .
 	@touch $@
 
-$(VENV)/test $(VENV)/check $(VENV)/training: $(VENV)/%: $(VENV)/runtime
+$(VENV)/test $(VENV)/check $(VENV)/training $(VENV)/fuzz: $(VENV)/%: $(VENV)/runtime
 	$(PIP) --editable '.[$*]'
 	@touch $@
 
