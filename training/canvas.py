@@ -24,7 +24,7 @@ DRAWN_BY_RULE = 0.3
 """Share of the curved sketches that are splines: rounder than what a mouse draws."""
 LINE_PX, LINE_SHARES = (1, 2, 3, 4, 5, 6), (0.13, 0.35, 0.3, 0.12, 0.06, 0.04)
 """Widths of curved ink: a page is brought near 3 px before the network reads it (daemon/page/line_width.py)."""
-DENSE_POWER = 0.5
+DENSE_POWER = 1.0
 """A sketch of n points is drawn in proportion to n ** this: a few scribbles hold most of the pixels that go wrong."""
 
 Random = np.random.Generator
@@ -83,7 +83,7 @@ class Canvases:
 
     def _sketches(self, source: int, random: Random) -> list[list[Points]]:
         """One, two or three sketches turned, mirrored and stretched, each in a unit box moved and scaled at random."""
-        count = int(random.choice([1, 2, 3], p=[0.5, 0.3, 0.2]))
+        count = int(random.choice([1, 2, 3], p=[0.4, 0.35, 0.25]))
         return [self._turned(self._sketch(source, random), random) for _ in range(count)]
 
     def _sketch(self, source: int, random: Random) -> Sequence[Points]:
