@@ -58,7 +58,7 @@ def of_graph(graph: LineGraph) -> tuple[list[int], int, int]:
     return topology(degree, len(ends), ends)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(planar_graphs, wobbles)
 @example({(0, 4), (1, 5), (1, 6), (5, 10), (6, 11), (10, 11), (10, 15)}, 232).via("a ring of a few pixels in a knot")
 @example({(1, 2), (1, 6), (3, 7), (5, 6), (8, 12), (10, 14)}, 264).via("a stub into a fork")
@@ -71,11 +71,13 @@ def test_a_planar_drawing_keeps_its_topology_and_its_ink(pairs: set[tuple[int, i
     assert distances(polylines(graph), arrays(lines)).max() < 2.0
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(planar_graphs, wobbles)
 def test_a_silent_network_loses_no_cycle_and_tears_nothing_apart(pairs: set[tuple[int, int]], wobble: int) -> None:
+    """A sharp tip that no corner marks may be cut short by two line widths, or become a fork of a few pixels."""
     lines = drawn_lines(pairs, wobble)
     drawn = page(lines, size=136, width_px=2)
     graph = interpret(drawn, silent(drawn))
     assert of_graph(graph)[1:] == of_pairs(pairs)[1:]
-    assert distances(arrays(lines), polylines(graph)).max() < 3.0
+    assert distances(arrays(lines), polylines(graph)).max() < 5.0
+    assert distances(polylines(graph), arrays(lines)).max() < 2.5
