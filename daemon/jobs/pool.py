@@ -113,6 +113,8 @@ class _Worker:
             planner,
             "--memory-mb",
             str(limits.memory_mb),
+            "--daemon",
+            str(os.getpid()),
         ]
         threads = str(limits.threads)
         environment = {"ORT_DISABLE_TELEMETRY": "1", "OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads}

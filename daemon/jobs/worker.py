@@ -38,9 +38,11 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--planner", default="daemon.jobs.planner")
     parser.add_argument("--memory-mb", type=int, required=True)
+    parser.add_argument("--daemon", type=int, required=True, help="the process that asks")
     options = parser.parse_args(arguments)
     os.environ["ORT_DISABLE_TELEMETRY"] = "1"
-    _live_with_the_daemon()
+    if not _live_with_the_daemon(options.daemon):
+        return 0
     answers = _own_stdout()
     resource.setrlimit(resource.RLIMIT_DATA, (options.memory_mb << 20,) * 2)
     planner = importlib.import_module(options.planner)
@@ -50,14 +52,18 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _live_with_the_daemon() -> None:
-    """Give way to the machine's thread; end when the daemon is killed; leave Ctrl-C to it; leave no core file."""
+def _live_with_the_daemon(daemon: int) -> bool:
+    """Give way to the machine's thread; end when the daemon is killed; leave Ctrl-C to it; leave no core file.
+
+    False when it has been killed before this process could ask to end with it.
+    """
     # systemd's filter of system calls may forbid it.
     with contextlib.suppress(PermissionError):
         os.nice(_NICER)
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return os.getppid() == daemon
 
 
 def _own_stdout() -> TextIO:
