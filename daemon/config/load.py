@@ -14,6 +14,7 @@ from pydantic import Field, ValidationError, field_validator
 from daemon.config.explain import explain
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine
 from daemon.config.paths import Paths, paths_of
+from daemon.config.scanner import Scanner
 from daemon.config.section import Section
 from daemon.config.sheet import Intake, Keep, Planning, Sheet
 from daemon.errors import SettingsError
@@ -31,6 +32,7 @@ class Settings(Section):
     keep: Keep = Keep()
     planning: Planning = Planning()
     sheet: Sheet = Sheet()
+    scanner: Scanner = Scanner(kind="none")
     machines: dict[Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$")], AnyMachine]
 
     @field_validator("machines")
@@ -55,6 +57,8 @@ class Options:
     state_dir: Path | None = None
     inbox: Path | None = None
     log_dir: Path | None = None
+    scanner: str | None = None
+    """"sane", "none", or the name of a scanner of SANE's."""
 
 
 def load_settings(
@@ -70,7 +74,9 @@ def load_settings(
         raise SettingsError("no machine is set: give --device grbl (or --device sim), or a [machines.NAME] section")
     place = str(file) if file else "settings"
     try:
-        return Settings.model_validate(_with_machine(_with_paths(raw, options, environment), options))
+        return Settings.model_validate(
+            _with_scanner(_with_machine(_with_paths(raw, options, environment), options), options)
+        )
     except ValidationError as error:
         raise SettingsError(explain(error, place, Settings.model_fields)) from None
 
@@ -90,6 +96,14 @@ def _with_paths(raw: dict[str, Any], options: Options, environment: Mapping[str,
         return raw
     said = {"state_dir": options.state_dir, "inbox": options.inbox, "log_dir": options.log_dir}
     return raw | {"paths": paths_of(given, said, environment)}
+
+
+def _with_scanner(raw: dict[str, Any], options: Options) -> dict[str, Any]:
+    said, given = options.scanner, raw.get("scanner", {})
+    if said is None or not isinstance(given, dict):
+        return raw
+    wanted = {"kind": said} if said in ("sane", "none") else {"kind": "sane", "device": said}
+    return raw | {"scanner": given | wanted}
 
 
 def _with_machine(raw: dict[str, Any], options: Options) -> dict[str, Any]:

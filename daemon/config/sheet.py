@@ -53,8 +53,9 @@ class Sheet(Section):
     box_origin_mm: PairMm = (25.0, 25.0)
     corner: Literal["lower left", "lower right", "upper left", "upper right"] = "lower left"
     """The sheet's corner where the origin lies; x still runs to the right and y up."""
-    size: Literal["fit", "true"] = "fit"
-    """"fit": as large as the box; "true": as large as the picture's resolution says, in the middle of the box."""
+    size: Literal["auto", "fit", "true"] = "auto"
+    """"fit": as large as the box; "true": as large as the picture's resolution says, in the middle of the box; "auto":
+    true for a page of the scanner, else fit."""
     margin_mm: Annotated[float, Field(ge=0)] = 0.0
     rotate: Literal[0, 90, 180, 270] = 0
     """Degrees clockwise."""

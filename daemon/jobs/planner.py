@@ -23,6 +23,7 @@ from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
 from daemon.graph.verdicts import as_json
 from daemon.intake.decode import decode
+from daemon.intake.scanner import is_scan
 from daemon.jobs.devices import program_of, seconds_of
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
@@ -70,7 +71,8 @@ def plan_picture(
         on_page = _strokes(graph, page, settings)
         drawing = on_given(on_page, page)
     with stages("toolpath"):
-        toolpath = _toolpath(drawing, page, settings, settings.machines[machine])
+        scanned = is_scan(Path(name).name)
+        toolpath = _toolpath(drawing, page, settings, settings.machines[machine], scanned=scanned)
     with stages("program"):
         program = program_of(toolpath, settings.machines[machine], folder.name)
         estimated_s = seconds_of(program, settings.machines[machine])
@@ -144,13 +146,16 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
     return strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
 
 
-def _toolpath(drawing: Drawing, page: PageImage, settings: Settings, machine: Machine) -> Toolpath:
+def _toolpath(
+    drawing: Drawing, page: PageImage, settings: Settings, machine: Machine, *, scanned: bool = False
+) -> Toolpath:
     sheet = settings.sheet
+    true_size = sheet.size == "true" or (sheet.size == "auto" and scanned and page.px_per_mm is not None)
     corner_mm = box_origin_mm(sheet, machine)
     given_px = float(np.sqrt(abs(np.linalg.det(page.to_given[:, :2]))))
     return plan_toolpath(
         drawing,
-        layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, sheet.size == "true"),
+        layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, true_size),
         precision=Precision(sheet.error_mm, _ERROR_PX * given_px, machine.resolution_mm),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
+import threading
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from daemon.intake.scanimage import Scanimage
 from daemon.intake.scanner import Scanner, Wanted
@@ -41,3 +45,18 @@ class Fake:
     @property
     def pages(self) -> list[str]:
         return sorted(path.name for path in self.inbox.iterdir())
+
+    def wait_for_call(self, call: str) -> None:
+        """Until it has been noted, at most half a minute."""
+        looks = 0
+        while call not in self.calls:
+            looks += 1
+            assert looks < 3000, self.calls
+            threading.Event().wait(0.01)
+
+
+def fake_on_path(folder: Path, *turns: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Fake:
+    """The one that everybody finds."""
+    made = Fake(folder, *turns)
+    monkeypatch.setenv("PATH", f"{folder / 'bin'}:{os.environ['PATH']}")
+    return made

@@ -170,7 +170,7 @@ def test_a_scanner_that_gives_nothing_is_stopped_gently_then_by_force(tmp_path: 
     wanted = Wanted(device="fake:0", page_within_s=1.5)
     with fake(tmp_path, {"then": then}, wanted=wanted) as scans:
         with pytest.raises(
-            ScannerTrouble, match="1 page scanned into the inbox, then the scanner gave nothing for 1.5 s"
+            ScannerTrouble, match=r"^1 page scanned into the inbox, then the scanner gave nothing for 1.5 s"
         ):
             scans.scanner.scan()
         assert scans.calls[-1] == last
@@ -195,8 +195,7 @@ def test_an_end_stops_the_scan_and_none_begins_after_it(tmp_path: Path) -> None:
 
         thread = threading.Thread(target=scan)
         thread.start()
-        while "hangs" not in scans.calls:
-            threading.Event().wait(0.01)
+        scans.wait_for_call("hangs")
         with pytest.raises(ScannerTrouble, match="is scanning: wait"):
             scans.scanner.scan()
         assert scans.scanner.pressed("scan") is False
