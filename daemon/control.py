@@ -37,7 +37,7 @@ class Order(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    order: Literal["ping", "next", "stop", "go", "cancel", "pause", "resume"] | MachineOrderName
+    order: Literal["ping", "scan", "next", "stop", "go", "cancel", "pause", "resume"] | MachineOrderName
     job: str = Field(default="", max_length=200)
     at_once: bool = False
     x_mm: float = Field(default=0.0, ge=-10000, le=10000)
@@ -46,8 +46,8 @@ class Order(BaseModel):
 
     @property
     def moves(self) -> bool:
-        """It takes as long as the machine does."""
-        return self.order in MACHINE_ORDERS
+        """It takes as long as the machine, or the scanner, does."""
+        return self.order in MACHINE_ORDERS or self.order == "scan"
 
 
 class NoDaemon(LinedrawError):

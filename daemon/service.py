@@ -27,6 +27,7 @@ from daemon.jobs.orders import MachineOrder, Places, outline_mm, rectangle_mm
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
+from daemon.jobs.scanning import Scanning
 from daemon.jobs.sheet import box_origin_mm
 from daemon.machine.recorder import Recorder
 from daemon.program.file import load_program
@@ -140,6 +141,7 @@ class Service:
             new_sheet=parts.desk.new_sheet,
         )
         self._watch = InboxWatch(inbox, paths.inbox, trouble=parts.desk.trouble)
+        self._scanning = Scanning(settings, say=parts.diary.say, trouble=parts.desk.trouble)
         self._control = ControlServer(paths.control, self._obey)
         self._inbox_dir = paths.inbox
 
@@ -151,7 +153,8 @@ class Service:
         # Before anything answers: whoever has got an answer finds a status.
         parts.board.tick(time.monotonic())
         parts.desk.recover(self._inbox_dir)
-        works = [parts.runner.plan_on, parts.runner.draw_on, self._watch.run, self._control.run, parts.board.run]
+        works = [parts.runner.plan_on, parts.runner.draw_on, self._watch.run, self._scanning.run, self._control.run]
+        works.append(parts.board.run)
         threads = [threading.Thread(target=self._work, args=(work,), name=work.__qualname__) for work in works]
         for thread in threads:
             thread.start()
@@ -179,9 +182,10 @@ class Service:
         parts = self._parts
         parts.runner.end()
         self._watch.stop()
+        self._scanning.end()
         self._control.stop()
-        planning, drawing, inbox, control, board = threads
-        for thread in (drawing, planning, inbox, control):
+        planning, drawing, inbox, scanning, control, board = threads
+        for thread in (drawing, planning, inbox, scanning, control):
             thread.join(LIFT_WITHIN_S)
         parts.board.change(state="ended", words="linedrawd has ended", pid=0, port="")
         parts.board.stop()
@@ -193,6 +197,7 @@ class Service:
         self._parts.diary.say("a person says", order=order.order, what=order.job or "-")
         obeyed: dict[str, Callable[[], str]] = {
             "ping": lambda: "linedrawd runs",
+            "scan": self._scanning.scan,
             "next": runner.new_sheet,
             "stop": runner.stop,
             "go": runner.go,

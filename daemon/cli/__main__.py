@@ -15,6 +15,7 @@ EXAMPLES = """examples:
   linedrawd --device sim --state-dir try   # the same on a simulated machine; drop pictures into try/inbox
   linedrawd plan house.png -o plans        # what would be drawn, without a machine
   linedrawd draw house.png --device grbl   # one picture now
+  linedrawd scan                           # what lies on the scanner comes into the inbox
   linedrawd next                           # a new sheet is in
   linedrawd machine check                  # who answers, and what a drawing would want otherwise
   linedrawd status                         # what it does now
@@ -52,8 +53,9 @@ def _event_parser() -> argparse.ArgumentParser:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from daemon.cli import control, draw, machine, models, plan, replay, serve, simulate, status  # noqa: PLC0415
+    from daemon.cli import control, draw, machine, models, plan, replay, scan, serve, simulate, status  # noqa: PLC0415
     from daemon.cli.options import add_machine, add_places, add_record  # noqa: PLC0415
+    from daemon.cli.scan import add_scanner  # noqa: PLC0415
 
     parser = argparse.ArgumentParser(
         prog="linedrawd",
@@ -63,11 +65,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"linedrawd {__version__}")
     add_machine(parser)
+    add_scanner(parser)
     add_places(parser)
     add_record(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, control, machine, status, models, simulate, replay):
+    for group in (plan, draw, scan, control, machine, status, models, simulate, replay):
         group.add_parser(subparsers)
     return parser
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from daemon.config import Options, Settings, load_settings
 
@@ -50,9 +51,9 @@ def record_of(args: argparse.Namespace) -> Path | None:
 
 def settings_of(args: argparse.Namespace, *, machine_needed: bool = False) -> Settings:
     """The settings of this command line. Raises SettingsError."""
-    paths = {name: Path(getattr(args, name)) for name in _PATHS if getattr(args, name, None)}
-    device, port = getattr(args, "device", None), getattr(args, "port", None)
-    return load_settings(Options(**paths, device=device, port=port), machine_needed=machine_needed)
+    paths: dict[str, Any] = {name: Path(getattr(args, name)) for name in _PATHS if getattr(args, name, None)}
+    said: dict[str, Any] = {name: getattr(args, name, None) for name in ("device", "port", "scanner")}
+    return load_settings(Options(**paths, **said), machine_needed=machine_needed)
 
 
 def verbose(args: argparse.Namespace) -> bool:
