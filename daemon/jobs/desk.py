@@ -65,7 +65,7 @@ class Desk:
         for job in self.journal.jobs(State.DRAWING):
             self.step(job.id, State.INTERRUPTED, _INTERRUPTED)
             self.cut_off = True
-            self.hold(f"job {job.id} was interrupted: look at the machine and the sheet")
+            self.hold(f"job {job.id} was interrupted: look at the sheet, and set the pen to its origin again")
         if self.held:
             self._show_held()
 

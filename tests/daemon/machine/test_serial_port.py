@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import serial
 
 from daemon.errors import MachineFault, NoMachine
-from daemon.machine.serial_port import adapters, open_serial, why_not_opened
+from daemon.machine.serial_port import Framing, adapters, open_serial, why_not_opened
 from daemon.machine.transport import Transport
 
 
@@ -67,6 +68,21 @@ def test_bytes_go_both_ways_unchanged(terminal: Terminal, port: Transport) -> No
     assert os.read(terminal.master, 1000) == every
     os.write(terminal.master, every)
     assert port.read(soon(port)) == every
+
+
+def test_framing_and_dtr_are_set_before_a_port_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pseudo terminal knows neither, so the port is looked at just before the system would open it."""
+    seen: list[tuple[object, ...]] = []
+
+    def look(port: serial.Serial) -> None:
+        seen.append((port.baudrate, port.bytesize, port.parity, port.stopbits, port.exclusive, port.dtr, port.rts))
+        raise serial.SerialException(errno.ENOENT, "not there")
+
+    monkeypatch.setattr(serial.Serial, "open", look)
+    for framing in (Framing(9600, data_bits=7, parity="E", stop_bits=2, dtr=False), Framing()):
+        with pytest.raises(NoMachine, match="there is no port"):
+            open_serial("/dev/ttyS99", framing=framing)
+    assert seen == [(9600, 7, "E", 2, True, False, False), (115200, 8, "N", 1, True, True, True)]
 
 
 def test_a_read_without_bytes_ends_when_its_time_has_come(port: Transport) -> None:
