@@ -44,5 +44,6 @@ def _sentence(what: str, x_mm: float, y_mm: float, reach_mm: tuple[float, float]
     high_mm = (low_mm[0] + reach_mm[0], low_mm[1] + reach_mm[1])
     return (
         f"{what} lies at ({x_mm:.1f}, {y_mm:.1f}) mm, the machine reaches x {low_mm[0]:g} to {high_mm[0]:g} "
-        f"and y {low_mm[1]:g} to {high_mm[1]:g} mm: make the box smaller (size = 'fit'), move the origin, or correct reach_mm"
+        f"and y {low_mm[1]:g} to {high_mm[1]:g} mm: make the box smaller (with size = 'fit'), move the origin, or "
+        "correct reach_mm"
     )
