@@ -87,6 +87,11 @@ class Conversation:
             raise LocalProtocolError("there is no job: start one")
         return self._job
 
+    @property
+    def on_paper(self) -> tuple[int, int]:
+        """Strokes of the running job that are certainly drawn, and the number from which on none was begun."""
+        return (0, 0) if self._job is None else (self._job.certain, self._job.touched)
+
     # -- what the world does --
 
     def begin(self, lines: Sequence[JobLine]) -> None:

@@ -85,6 +85,16 @@ class Job:
         self._verdict, self._position_known = verdict, position_known
 
     @property
+    def certain(self) -> int:
+        """The first n strokes are certainly drawn."""
+        return strokes_before(self._strokes, self.executed)
+
+    @property
+    def touched(self) -> int:
+        """No stroke from this number on has been begun."""
+        return strokes_touched(self._strokes, self.begun)
+
+    @property
     def verdict(self) -> Verdict:
         """How it will have ended."""
         return self._verdict
@@ -94,8 +104,7 @@ class Job:
         if self._verdict is Verdict.FINISHED:
             certain = possible = strokes_touched(self._strokes, len(self))
         else:
-            certain = strokes_before(self._strokes, self.executed)
-            possible = max(certain, strokes_touched(self._strokes, self.begun))
+            certain, possible = self.certain, max(self.certain, self.touched)
         return Ended(self._verdict, certain, possible, self._position_known, lifted, self._why)
 
 

@@ -127,6 +127,16 @@ class DobotSession:
         self._talk.go(Turn(Signal.UNPLUG, sentences.UNPLUGGED, position_known=False))
         return self._told()
 
+    @property
+    def strokes_touched(self) -> int:
+        """See `Session.strokes_touched`: a line counts from the moment on in which it is the next to go."""
+        return self._talk.on_paper[1]
+
+    @property
+    def strokes_certain(self) -> int:
+        """See `Session.strokes_certain`."""
+        return self._talk.on_paper[0]
+
     def _told(self) -> list[Event]:
         events, self._talk.events = self._talk.events, []
         return events

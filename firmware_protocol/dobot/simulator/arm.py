@@ -24,7 +24,8 @@ class Build:
 
     depth: places in the queue. first_index: of the first command; unused: what is said to have been executed before
     anything was. left_holds_running: the command that runs still counts as one in the queue. clear_resets: clearing
-    the queue begins the indices anew. home_s: how long homing takes at least.
+    the queue begins the indices anew. abort_counts: an aborted command is said to have been executed. home_s: how long
+    homing takes at least.
     """
 
     depth: int = 32
@@ -33,6 +34,7 @@ class Build:
     left_holds_running: bool = True
     clear_resets: bool = False
     home_s: float = 10.0
+    abort_counts: bool = False
 
 
 @dataclass(slots=True)
@@ -100,6 +102,7 @@ class Arm:
         self.running = False
         if force and self._current is not None:
             self._cut()
+            self.executed = self._current.index if self.build.abort_counts else self.executed
             self._current = None
 
     def clear(self) -> None:

@@ -46,7 +46,8 @@ def simulator_from(
 ) -> DobotSimulator:
     """The simulated arm of these options; what they say goes before the arguments.
 
-    depth, first_index, left_bytes (4 or 8), unused (0 or none), left_holds_running and clear_resets (0 or 1), home_s;
+    depth, first_index, left_bytes (4 or 8), unused (0 or none), left_holds_running, clear_resets and abort_counts
+    (0 or 1), home_s;
     alarms (codes in hexadecimal, joined by colons), pen_z (height in mm at which the pen touches), origin (X:Y of the
     sheet on the arm, in mm; unless stated that of `kinematics`); faults: drop, corrupt, stray by the number of the
     acknowledgement from 0, or aN for the N-th other answer; delay=N:SECONDS; lose=N for a command that arrives damaged;
@@ -59,6 +60,7 @@ def simulator_from(
         unused=_taken(rest, "unused", _UNUSED.__getitem__, 0),
         left_holds_running=_taken(rest, "left_holds_running", _FLAGS.__getitem__, True),
         clear_resets=_taken(rest, "clear_resets", _FLAGS.__getitem__, False),
+        abort_counts=_taken(rest, "abort_counts", _FLAGS.__getitem__, False),
         home_s=_taken(rest, "home_s", float, 10.0),
     )
     left_bytes = _taken(rest, "left_bytes", int, 4)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import cycle
+
 import pytest
 
 from firmware_protocol.dobot.packet import PacketReader
@@ -59,7 +61,16 @@ def test_a_command_is_neither_lost_nor_drawn_twice(
 def test_an_acknowledgement_that_comes_late_changes_nothing(number: int, by_s: float) -> None:
     bench = bench_with(DelayReply(number, by_s=by_s))
     assert bench.ended.verdict is Verdict.FINISHED
+    assert bench.sim.arm.left == 32
     assert rounded(bench.sim.ink) == whole(3)
+
+
+@pytest.mark.parametrize("by_ms", range(300, 340, 2))
+def test_done_is_said_when_the_queue_is_empty_even_where_acknowledgements_were_mistaken(by_ms: int) -> None:
+    """The last but one comes so late that it is taken for the last, which is lost."""
+    bench = bench_with(DelayReply(LAST - 1, by_s=by_ms / 1000), DropReply(LAST))
+    assert bench.ended.verdict is Verdict.FINISHED
+    assert bench.sim.arm.left == 32
 
 
 def test_several_faults_of_the_wire_in_a_job_are_got_over() -> None:
@@ -77,19 +88,15 @@ def test_a_command_that_is_never_taken_is_sent_twice_and_ends_the_job() -> None:
     assert bench.session.state is State.READY
 
 
-def test_where_247_tells_nothing_the_command_is_not_sent_again() -> None:
-    bench = Bench(arm={"faults": [DropReply(20)]})
-    bench.ready()
-    bench.sim.arm.build = Build(left_holds_running=True)
-    bench.start(LINES)
+@pytest.mark.parametrize("tells", [[3], [3, 5, 8, 4, 9, 6]], ids=["always the same", "always another"])
+def test_where_247_tells_nothing_the_command_is_not_sent_again(
+    tells: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = Bench(arm={"faults": [DropReply(20)]}).ready().start(LINES)
     bench.until(lambda: bench.sim.acks == 20)
-    # From now on 247 says something else each time, as an arm would whose queue others fill as well.
-    tells = iter(range(1, 10_000))
-    type(bench.sim.arm).left, before = property(lambda self: 3 + next(tells) % 7), type(bench.sim.arm).left
-    try:
-        bench.until(lambda: bench.over)
-    finally:
-        type(bench.sim.arm).left = before  # type: ignore[method-assign]
+    left = cycle(tells)
+    monkeypatch.setattr(type(bench.sim.arm), "left", property(lambda arm: next(left)))
+    bench.until(lambda: bench.over)
     end = bench.ended
     assert (end.verdict, end.pen_lifted) == (Verdict.SILENT, True)
     assert "acknowledgement of line 21" in end.why

@@ -157,9 +157,10 @@ def test_a_pause_stands_at_the_end_of_a_stroke_and_goes_on(after_s: float) -> No
     assert rounded(bench.sim.ink) == whole(12)
 
 
+@pytest.mark.parametrize("abort_counts", [False, True])
 @pytest.mark.parametrize("after_s", [0.02, 0.5, 0.9, 1.234, 1.7, 2.2])
-def test_a_pause_at_once_takes_the_stroke_up_where_it_was_cut(after_s: float) -> None:
-    bench = Bench().ready().start(strokes(3))
+def test_a_pause_at_once_takes_the_stroke_up_where_it_was_cut(after_s: float, abort_counts: bool) -> None:
+    bench = Bench(arm={"build": Build(abort_counts=abort_counts)}).ready().start(strokes(3))
     bench.wait(after_s)
     bench.session.pause(bench.now, at_once=True)
     bench.until(lambda: bench.session.state is State.PAUSED)

@@ -89,6 +89,13 @@ def test_a_reply_that_is_lost_at_the_start_is_asked_for_again(
     assert Bench(arm={"faults": [fault(index, answers=True)]}).ready().session.state is State.READY
 
 
+def test_a_false_header_holds_nothing_up() -> None:
+    bench = Bench()
+    bench.session.receive(b"\xaa\xaa\xa9\x01", 0.0)
+    bench.ready()
+    assert bench.time_of(Ready) < 0.5
+
+
 def test_an_idle_arm_that_restarts_is_noticed() -> None:
     bench = Bench().ready()
     bench.sim.arm.restart()

@@ -32,10 +32,10 @@ def test_without_options_it_is_the_usual_arm() -> None:
 def test_every_option_of_the_build() -> None:
     options = {
         "depth": "8", "first_index": "2", "unused": "none", "left_holds_running": "0", "clear_resets": "1",
-        "home_s": "3", "left_bytes": "8", "alarms": "00:50", "origin": "200:-60", "pen_z": "-12.5",
+        "abort_counts": "1", "home_s": "3", "left_bytes": "8", "alarms": "00:50", "origin": "200:-60", "pen_z": "-12.5",
     }  # fmt: skip
     simulator = simulator_from(options, pen=PenRule(down_at_mm=1.0))
-    assert simulator.arm.build == Build(8, 2, NONE_YET, False, True, 3.0)
+    assert simulator.arm.build == Build(8, 2, NONE_YET, False, True, 3.0, True)
     assert simulator.arm.alarms == {0x00, 0x50}
     assert simulator.arm._trace._origin_mm == (200.0, -60.0)
     assert simulator.arm._trace._ink.rule == PenRule(down_at_mm=-12.5)
