@@ -165,6 +165,17 @@ class Session(Protocol):
     def unplugged(self, now: float) -> list[Event]:
         """The port is gone: what that means for the job."""
 
+    @property
+    def strokes_touched(self) -> int:
+        """No stroke of the running job from this number on was handed out, or will be by the next `data_to_send`.
+
+        Whoever must write down what may be on the sheet asks before each `data_to_send`. 0 without a job.
+        """
+
+    @property
+    def strokes_certain(self) -> int:
+        """The first n strokes of the running job are certainly drawn, as far as is known now. 0 without a job."""
+
 
 class PausableSession(Session, Protocol):
     """A session that can stand still in the middle of a job and go on."""

@@ -12,7 +12,7 @@ def strokes_before(strokes: Sequence[int | None], line: int) -> int:
 
 def strokes_touched(strokes: Sequence[int | None], lines: int) -> int:
     """No stroke from this number on has a line among the first `lines`."""
-    last = next((stroke for stroke in reversed(strokes[:lines]) if stroke is not None), None)
-    if last is not None:
-        return last + 1
+    for line in range(min(lines, len(strokes)) - 1, -1, -1):
+        if (stroke := strokes[line]) is not None:
+            return stroke + 1
     return next((stroke for stroke in strokes if stroke is not None), 0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol, TypeAlias
 
+from daemon.machine.link import Promise, promise_nothing
 from daemon.shapes import Program
 from firmware_protocol.ink import Vector
 from firmware_protocol.session import Ended, Ready
@@ -25,8 +26,8 @@ class OpenMachine(Protocol):
     def connect(self) -> Ready:
         """Wait until it has introduced itself. Raises NoMachine or MachineFault."""
 
-    def draw(self, program: Program) -> Ended:
-        """Stream the program; returns when the job is over, however it ended."""
+    def draw(self, program: Program, promise: Promise = promise_nothing) -> Ended:
+        """Stream the program; returns when the job is over, however it ended. promise: see `Link.draw`."""
 
     def listen(self) -> None:
         """Hear what came meanwhile. Raises MachineFault when the machine is no longer there or not ready."""

@@ -6,7 +6,8 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from typing import Literal, Protocol, runtime_checkable
+from dataclasses import replace
+from typing import Literal, Protocol, TypeAlias, runtime_checkable
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.machine.recorder import Kind, Recorder
@@ -16,6 +17,18 @@ from firmware_protocol.session import Ended, Event, JobLine, NotReady, PausableS
 
 LIFT_WITHIN_S = 30.0
 """For an interrupted job to slow down and lift its pen."""
+
+
+Promise: TypeAlias = Callable[[int, int], int]
+"""Called with how many strokes may be touched by what is sent next, and how many are certainly drawn.
+
+Returns how many strokes are promised from now on, at least the first figure. Raises LinedrawError when it cannot.
+"""
+
+
+def promise_nothing(touched: int, certain: int) -> int:
+    """For what leaves no stroke that anybody must know of."""
+    return touched
 
 
 @runtime_checkable
@@ -47,6 +60,8 @@ class Link:
         self._stop_asked = threading.Event()
         self._woken = threading.Event()
         self._wishes: deque[tuple[Literal["pause", "resume"], bool | None]] = deque()
+        self._promise: Promise = promise_nothing
+        self._promised, self._unpromised = 0, ""
 
     def connect(self) -> Ready:
         """Wait until the machine takes a job.
@@ -63,8 +78,11 @@ class Link:
                 raise NoMachine(f"{self._transport.name}: stopped before the machine answered: start again")
         raise AssertionError("without a time limit the events do not end")
 
-    def draw(self, lines: Sequence[JobLine]) -> Ended:
+    def draw(self, lines: Sequence[JobLine], *, promise: Promise = promise_nothing) -> Ended:
         """Send a job and wait for its end, whatever it is; an unplugged machine is an end too.
+
+        Before a byte of a stroke is sent for which nothing has been promised, `promise` is called; where it fails the
+        job is stopped, pen up, and its error is the reason.
 
         A `stop` that was asked for before is obeyed before a line is sent. KeyboardInterrupt stops the job, waits
         until the pen is up, and is raised again; a second one gives up waiting. Raises MachineFault when no job can be
@@ -77,6 +95,8 @@ class Link:
             self._session.start(lines, now)
         except LocalProtocolError as fault:
             raise MachineFault(f"{self._transport.name}: {fault}") from fault
+        self._promise, self._unpromised = promise, ""
+        self._promised = next((line.stroke for line in lines if line.stroke is not None), 0)
         try:
             return self._until_ended(until=None)
         except KeyboardInterrupt:
@@ -86,6 +106,7 @@ class Link:
         finally:
             self._stop_asked.clear()
             self._wishes.clear()
+            self._promise = promise_nothing
 
     def listen(self, until_s: float | None) -> None:
         """Between jobs: wait until the transport's time `until_s` (None: for ever) or until `wake` or `stop`.
@@ -139,7 +160,7 @@ class Link:
         try:
             for event in self._events(until=until):
                 if isinstance(event, Ended):
-                    return event
+                    return self._as_promised(event) if self._unpromised else event
                 if event is None:
                     self._do_what_was_asked()
         except MachineFault:
@@ -182,6 +203,7 @@ class Link:
             yield None
             now = self._transport.now()
             events = [*self._session.receive(data, now), *self._session.expire(now)]
+            self._promise_strokes(now)
             said = self._session.data_to_send(now)
             if self._recorder:
                 self._recorder.turned(now, data, said, events)
@@ -194,6 +216,23 @@ class Link:
             if until is not None and now >= until:
                 return
             data = self._transport.read(self._wait_until(until))
+
+    def _promise_strokes(self, now: float) -> None:
+        """What may come onto the sheet is written down before it can."""
+        touched = self._session.strokes_touched
+        if touched <= self._promised or self._unpromised:
+            return
+        try:
+            self._promised = self._promise(touched, self._session.strokes_certain)
+        except LinedrawError as error:
+            self._unpromised = str(error)
+            self._record(now, "stop")
+            self._session.stop(now)
+
+    def _as_promised(self, ended: Ended) -> Ended:
+        """Nothing beyond the promise was sent, whatever the session was about to do."""
+        possible = min(ended.strokes_possible, self._promised)
+        return replace(ended, why=self._unpromised, strokes_possible=possible)
 
     def _write(self, data: bytes) -> MachineFault | None:
         """The fault is raised later: what the machine has said before it was unplugged comes first."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from daemon.errors import LinedrawError
-from daemon.machine.link import Link
+from daemon.machine.link import Link, Promise, promise_nothing
 from daemon.machine.recorder import Recorder
 from daemon.machine.serial_port import Framing, open_serial
 from daemon.machine.simulated import SimulatedTransport, way_to
@@ -97,9 +97,9 @@ class OpenedMachine(Generic[S]):
         """Wait until the machine takes a job. Raises NoMachine or MachineFault."""
         return self._link.connect()
 
-    def draw(self, program: Program) -> Ended:
-        """Send the program and wait for its end. Raises MachineFault when it cannot be started."""
-        return self._link.draw(self._displaced(program).lines)
+    def draw(self, program: Program, promise: Promise = promise_nothing) -> Ended:
+        """Send the program and wait for its end; see `Link.draw`. Raises MachineFault when it cannot be started."""
+        return self._link.draw(self._displaced(program).lines, promise=promise)
 
     def listen(self) -> None:
         """Hear what an idle machine said meanwhile. Raises MachineFault when it is gone or no longer ready."""

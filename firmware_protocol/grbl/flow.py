@@ -65,17 +65,24 @@ class Flow:
         owed = b"".join(self._lines[self.answered : self.sent]).decode("ascii").replace(" ", "").upper()
         return sum(float(seconds) for seconds in _DWELL.findall(owed))
 
+    @property
+    def reach(self) -> int:
+        """The line before which the next `take` ends."""
+        line, owed_bytes = self.sent, self._owed_bytes
+        while line < len(self._lines) and self._fits(line, owed_bytes):
+            owed_bytes += len(self._lines[line])
+            line += 1
+        return line
+
     def text(self, line: int) -> str:
         """The line as it is sent."""
         return self._lines[line].decode("ascii").rstrip()
 
     def take(self) -> bytes:
         """The next lines that fit, to be written now."""
-        first = self.sent
-        while self.sent < len(self._lines) and self._fits(self.sent):
-            self._owed_bytes += len(self._lines[self.sent])
-            self.sent += 1
-        return b"".join(self._lines[first : self.sent])
+        taken = b"".join(self._lines[self.sent : self.reach])
+        self.sent, self._owed_bytes = self.reach, self._owed_bytes + len(taken)
+        return taken
 
     def answer(self) -> int | None:
         """The number of the line that an answer belongs to; None when no answer is owed."""
@@ -113,12 +120,12 @@ class Flow:
             if _BARRIERS.search(plain):
                 self._barriers.add(index)
 
-    def _fits(self, line: int) -> bool:
-        if not self.owed:
+    def _fits(self, line: int, owed_bytes: int) -> bool:
+        if line == self.answered:
             return True
         if self._room_bytes is None or line in self._alone or line - 1 in self._alone:
             return False
-        return self._owed_bytes + len(self._lines[line]) <= self._room_bytes
+        return owed_bytes + len(self._lines[line]) <= self._room_bytes
 
 
 def check(texts: Sequence[str], *, buffer_bytes: int) -> None:

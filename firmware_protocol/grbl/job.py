@@ -65,6 +65,16 @@ class Job:
             certain = possible = self._strokes
         return Ended(self.verdict, certain, possible, self.position_known, lifted, self._why)
 
+    @property
+    def certain(self) -> int:
+        """The first n strokes are certainly drawn."""
+        return self._on_paper()[0]
+
+    def touched(self, *, next_too: bool) -> int:
+        """No stroke from this number on was sent. next_too: nor will be by the next lines that are taken."""
+        flow = self.leg.flow
+        return max(self._possible, self.leg.touched(flow.reach if next_too else flow.sent))
+
     def pause_after_stroke(self) -> bool:
         """Let the lines end behind the running stroke; False when none is left behind it."""
         self.pausing = self.leg.end_after_stroke()

@@ -91,6 +91,13 @@ class Leg:
         strokes = [part.stroke for part in self.parts]
         return strokes_before(strokes, done), strokes_touched(strokes, begun)
 
+    def touched(self, lines: int) -> int:
+        """No stroke from this number on has a part among the first `lines` of the flow."""
+        for line in range(min(lines, len(self.parts)) - 1, -1, -1):
+            if (stroke := self.parts[line].stroke) is not None:
+                return stroke + 1
+        return next((part.stroke for part in self.parts if part.stroke is not None), 0)
+
     # -- how it is cut --
 
     def end_after_stroke(self) -> bool:

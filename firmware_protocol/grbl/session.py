@@ -205,6 +205,19 @@ class GrblSession:
         return self._told()
 
     @property
+    def strokes_touched(self) -> int:
+        """See `Session.strokes_touched`."""
+        talk = self._talk
+        if talk.job is None:
+            return 0
+        return talk.job.touched(next_too=talk.state in SENDING and talk.flow is talk.job.leg.flow)
+
+    @property
+    def strokes_certain(self) -> int:
+        """See `Session.strokes_certain`."""
+        return 0 if self._talk.job is None else self._talk.job.certain
+
+    @property
     def _asking(self) -> bool:
         return self._talk.state in POLLED and not self._talk.flow.homing
 
