@@ -174,6 +174,8 @@ class DobotMachine(Machine):
     baud: Annotated[int, Field(gt=0)] = 115200
     sheet_origin_mm: PairMm = (190.0, -57.0)
     """The sheet's lower left corner, seen from the middle of the base."""
+    straight: Literal["CP", "PTP"] = "CP"
+    """"PTP" stops at every point: for an arm that takes no continuous path."""
     park_mm: PairMm = (25.0, 57.0)
     pen: ZPenSettings = ZPenSettings(up_mm=10.0)
 

@@ -32,6 +32,7 @@ def program_of(toolpath: Toolpath, machine: DobotMachine, name: str) -> Program:
         up_mm=machine.pen.up_mm,
         down_mm=machine.pen.down_mm,
         draw_mm_s=machine.draw_mm_s,
+        straight=machine.straight,
     )
     return Program((ProgramLine(HOME), *program.lines), program.strokes) if machine.home == "job" else program
 

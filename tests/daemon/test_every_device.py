@@ -85,6 +85,7 @@ def test_a_picture_is_understood_and_drawn_by(device: str, tmp_path: Path) -> No
         "device = 'emco'\nurl = 'sim://emco'\ndialect = 'fanuc'\nlink = 'blocks'\npreset = '8N1'",
         "device = 'emco'\nurl = 'sim://emco?buffer=1024'\nlink = 'blocks'\nack = 'ok'\nnak = 'again'",
         "device = 'emco'\nurl = 'sim://emco?start_s=30'\nbaud = 300",
+        "device = 'dobot'\nurl = 'sim://dobot'\nstraight = 'PTP'",
         "device = 'dobot'\nurl = 'sim://dobot?first_index=2&left_bytes=8'\nhome = 'job'\nsheet_origin_mm = [195, -60]",
     ],
 )
