@@ -13,6 +13,8 @@ from firmware_protocol.ink import PenRule
 from firmware_protocol.session import Ended, Event, Status
 
 UP_MM, DOWN_MM = 10.0, -5.0
+LATEST = 20
+"""More events than one turn tells."""
 T = TypeVar("T")
 
 
@@ -84,7 +86,7 @@ class Bench:
 
     @property
     def over(self) -> bool:
-        return any(isinstance(event, Ended) for event in self.events)
+        return any(isinstance(event, Ended) for event in self.events[-LATEST:])
 
     @property
     def ended(self) -> Ended:
