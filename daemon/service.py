@@ -16,16 +16,21 @@ from daemon import __version__
 from daemon.config import Settings
 from daemon.control import MACHINE_ORDERS, ControlServer, Order
 from daemon.errors import SettingsError
-from daemon.intake.inbox import Inbox, InboxWatch, readable
+from daemon.intake.inbox import Inbox
+from daemon.intake.rank import Rank, rank
+from daemon.intake.watch import InboxWatch
+from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.desk import Desk
 from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
-from daemon.jobs.journal import Journal
 from daemon.jobs.moves import PointMm
+from daemon.jobs.open_journal import open_journal
 from daemon.jobs.orders import MachineOrder, Places, outline_mm, rectangle_mm
+from daemon.jobs.pen_life import PenLife
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
+from daemon.jobs.retention import Retention
 from daemon.jobs.runner import Runner
 from daemon.jobs.scanning import Scanning
 from daemon.jobs.sheet import box_origin_mm
@@ -47,6 +52,7 @@ class Parts:
     planning: Planning
     drawing: Drawing
     runner: Runner
+    pen: PenLife
     board: StatusBoard
     diary: Diary
 
@@ -68,12 +74,23 @@ def parts_of(
     with ExitStack() as at_end:
         at_end.enter_context(_only_one(paths.state_dir))
         folders = JobFolders(paths.jobs)
-        diary = at_end.enter_context(closing(Diary(paths.log_dir, paths.jobs, to_stderr=verbose)))
+        keep = settings.keep
+        diary = Diary(paths.log_dir, paths.jobs, to_stderr=verbose, log_mb=keep.log_mb, log_files=keep.log_files)
+        at_end.enter_context(closing(diary))
         board = StatusBoard(paths.status)
         board.change(machine=name)
-        journal = at_end.enter_context(closing(Journal(paths.journal)))
-        asks, ahead = settings.machines[name].asks_for_sheets, settings.planning.ahead
-        desk = Desk(journal, folders, say=diary.say, show=board.change, asks_for_sheets=asks, ahead=ahead)
+        journal = at_end.enter_context(closing(open_journal(paths.journal, say=diary.say)))
+        desk = Desk(
+            journal,
+            folders,
+            say=diary.say,
+            show=board.change,
+            asks_for_sheets=settings.machines[name].asks_for_sheets,
+            ahead=settings.planning.ahead,
+            rank=_rank_in(settings),
+        )
+        life_m = settings.machines[name].pen_life_m
+        pen = PenLife(paths.state_dir / "pen.json", life_m, say=diary.say, show=board.change)
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
         recorder = at_end.enter_context(closing(Recorder(record))) if record else None
         drawing = Drawing(
@@ -83,10 +100,15 @@ def parts_of(
             places=_places(settings, desk),
             load=load_program,
             measure=lambda folder: pool.measure(folder, name),
+            inked=pen.drew,
         )
         at_end.callback(drawing.close)
         planning = Planning(desk, pool, name)
-        yield Parts(desk, pool, planning, drawing, Runner(desk, pool, planning, drawing), board, diary)
+        yield Parts(desk, pool, planning, drawing, Runner(desk, pool, planning, drawing), pen, board, diary)
+
+
+def _rank_in(settings: Settings) -> Callable[[str], Rank]:
+    return lambda name: rank(name, settings.intake.order)
 
 
 def _places(settings: Settings, desk: Desk) -> Places:
@@ -133,14 +155,23 @@ class Service:
     def __init__(self, settings: Settings, parts: Parts) -> None:
         paths = settings.paths
         self._parts, self._ended, self._asked = parts, threading.Event(), False
+        intake = settings.intake
+        self._arrivals = Arrivals(parts.desk, settings)
         inbox = Inbox(
             paths.inbox,
-            settle_s=settings.intake.settle_s,
-            claim=lambda picture: parts.desk.take(picture, readable(picture.name)),
+            settle_s=intake.settle_s,
+            claim=self._arrivals.take,
             refuse=parts.desk.trouble,
-            new_sheet=parts.desk.new_sheet,
+            signs={"NEXT": parts.desk.new_sheet, "PEN": parts.pen.new},
+            order=intake.order,
         )
-        self._watch = InboxWatch(inbox, paths.inbox, trouble=parts.desk.trouble)
+        self._watch = InboxWatch(
+            inbox,
+            paths.inbox,
+            trouble=parts.desk.trouble,
+            poll_s=intake.poll_s if intake.watch == "poll" else None,
+            tidy=Retention(parts.desk, settings.keep).turn,
+        )
         self._scanning = Scanning(settings, say=parts.diary.say, trouble=parts.desk.trouble)
         self._control = ControlServer(paths.control, self._obey)
         self._inbox_dir = paths.inbox
@@ -152,6 +183,7 @@ class Service:
         parts.board.change(state="idle")
         # Before anything answers: whoever has got an answer finds a status.
         parts.board.tick(time.monotonic())
+        self._arrivals.recover(self._inbox_dir)
         parts.desk.recover(self._inbox_dir)
         works = [parts.runner.plan_on, parts.runner.draw_on, self._watch.run, self._scanning.run, self._control.run]
         works.append(parts.board.run)

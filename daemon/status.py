@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import logging.handlers
@@ -22,7 +23,10 @@ AT_MOST_EVERY_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What status.json holds. `state` is one word, `words` a sentence; seconds come from the machine's time model."""
+    """What status.json holds. `state` is one word, `words` a sentence; seconds come from the machine's time model.
+
+    ink_m: metres that the pen has drawn; pen: says that it is worn.
+    """
 
     state: str = "starting"
     words: str = ""
@@ -41,6 +45,8 @@ class Status:
     jobs_queued: int = 0
     jobs_waiting: int = 0
     held: str = ""
+    ink_m: float = 0.0
+    pen: str = ""
     last_error: str = ""
     changed: str = ""
 
@@ -108,12 +114,15 @@ class Diary:
     whoever rotates them.
     """
 
-    def __init__(self, log_dir: Path, jobs_dir: Path, *, to_stderr: bool = False) -> None:
-        self._jobs_dir = jobs_dir
+    def __init__(
+        self, log_dir: Path, jobs_dir: Path, *, to_stderr: bool = False, log_mb: float = 10.0, log_files: int = 4
+    ) -> None:
+        """log_mb: a log of this size is set aside, and log_files such are kept; a job's own log ends there."""
+        self._jobs_dir, self._limit_bytes = jobs_dir, int(log_mb * 1e6)
         self._log = logging.getLogger("linedrawd")
         self._log.setLevel(logging.INFO)
         self._log.propagate = False
-        self._handlers: list[logging.Handler] = [_file_handler(log_dir)]
+        self._handlers: list[logging.Handler] = [_file_handler(log_dir, self._limit_bytes, log_files)]
         if to_stderr:
             self._handlers.append(logging.StreamHandler())
         for handler in self._handlers:
@@ -131,7 +140,8 @@ class Diary:
     def _say_in_folder(self, job: str, line: str) -> None:
         try:
             with (self._jobs_dir / job / JOB_LOG_NAME).open("a", encoding="utf-8") as file:
-                file.write(line + "\n")
+                if file.tell() < self._limit_bytes:
+                    file.write(line + "\n")
         except OSError as error:
             self._log.error(f"the log of the job cannot be written ({error.strerror})", extra={"job": job})
 
@@ -141,10 +151,31 @@ class Diary:
             handler.close()
 
 
-def _file_handler(log_dir: Path) -> logging.Handler:
+class _BoundedFile(logging.handlers.WatchedFileHandler):
+    """A log file that may be moved away, and that moves itself away where it is full: NAME.1, NAME.2, ..."""
+
+    def __init__(self, path: Path, limit_bytes: int, files: int) -> None:
+        super().__init__(path, encoding="utf-8", errors="backslashreplace")
+        self._path, self._limit_bytes, self._files = path, limit_bytes, files
+
+    def emit(self, record: logging.LogRecord) -> None:
+        # Before the line is written: a line that has been said is never only in a file that is about to go.
+        with contextlib.suppress(OSError):
+            if self._path.stat().st_size >= self._limit_bytes:
+                self._set_aside()
+        super().emit(record)
+
+    def _set_aside(self) -> None:
+        aside = [self._path.with_name(f"{self._path.name}.{number}") for number in range(1, self._files + 1)]
+        for older, newer in zip(reversed(aside), [*reversed(aside[:-1]), self._path], strict=True):
+            with contextlib.suppress(FileNotFoundError):
+                newer.replace(older)
+
+
+def _file_handler(log_dir: Path, limit_bytes: int, files: int) -> logging.Handler:
     try:
         log_dir.mkdir(parents=True, exist_ok=True)
-        return logging.handlers.WatchedFileHandler(log_dir / LOG_NAME, encoding="utf-8", errors="backslashreplace")
+        return _BoundedFile(log_dir / LOG_NAME, limit_bytes, files)
     except OSError as error:
         raise DiskTrouble(
             f"{log_dir / LOG_NAME} cannot be written ({error.strerror}): give another --log-dir"

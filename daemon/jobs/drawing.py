@@ -17,6 +17,7 @@ from daemon.jobs.moves import Moves
 from daemon.jobs.open_machine import InkMm, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
 from daemon.jobs.progress import Progress, end_in_words, tell
+from daemon.jobs.promise import Ahead
 from daemon.jobs.states import State
 from daemon.shapes import Program
 from firmware_protocol.session import Accepted, Ended, Event, Verdict
@@ -53,10 +54,12 @@ class Drawing:
         measure: Callable[[Path], None],
         moves: Moves,
         places: Places,
+        inked: Callable[[Path, int], None] = lambda folder, strokes: None,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
+        """inked: told the folder of a job that is over and how many of its strokes are on paper."""
         self._desk, self._opened, self._load, self._measure, self._now = desk, opened, load, measure, now
-        self._moves, self._places, self._asked = moves, places, Asked(desk.wake)
+        self._moves, self._places, self._asked, self._inked = moves, places, Asked(desk.wake), inked
         self._machine: OpenMachine | None = None
         self._progress: Progress | None = None
         self.missing: NoMachine | MachineFault | None = None
@@ -201,22 +204,29 @@ class Drawing:
         except LinedrawError as error:
             self._desk.step_at_last(job.id, State.FAILED, str(error))
             return
-        self._progress = Progress(self._desk.show, program, self._machine.line_times_s(program))
+        times_s = self._machine.line_times_s(program)
+        self._progress = Progress(self._desk.show, program, times_s, now=self._machine.now)
         self._desk.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
         self._asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
-        ended = self._ended(job, program)
+        ended = self._ended(job, program, Ahead(self._promises(job, program), program, times_s))
         self._progress = None
         self._asked.accept()
         self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
         self._desk.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
 
-    def _ended(self, job: Job, program: Program) -> Ended:
+    def _promises(self, job: Job, program: Program) -> Callable[[int, int], None]:
+        def write(certain: int, possible: int) -> None:
+            self._desk.journal.promise(job.id, strokes=program.strokes, certain=certain, possible=possible)
+
+        return write
+
+    def _ended(self, job: Job, program: Program, promise: Ahead) -> Ended:
         assert self._machine is not None
         if self._desk.held or self._desk.ending or self._desk.is_cancelled(job.id):
             return Ended(Verdict.STOPPED, 0, 0, True, True, "a person stopped it before it began")
         try:
-            return self._machine.draw(program)
+            return self._machine.draw(program, promise)
         except MachineFault as error:
             return Ended(Verdict.UNPLUGGED, 0, program.strokes, False, False, str(error))
 
@@ -226,11 +236,16 @@ class Drawing:
         if not (ended.verdict in _PORT_STAYS_OPEN and ended.position_known):
             self._give_back()
         self._report(job, ink, real_s)
+        self._inked(self._desk.folders.path(job.id), ended.strokes_certain)
         cancelled = self._desk.is_cancelled(job.id) and ended.verdict is Verdict.STOPPED
         state = State.CANCELLED if cancelled else _STATES.get(ended.verdict, State.INTERRUPTED)
+        if state is State.INTERRUPTED and not ended.strokes_possible:
+            # Not one stroke is touched, so that nothing is lost by beginning again when a person says `go`.
+            state = State.PLANNED
         if not self._desk.held:
             self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=cancelled or state is State.DONE)
-        self._desk.step_at_last(job.id, state, end_in_words(ended, program.strokes), real_s=real_s, port=port)
+        extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)
+        self._desk.end_drawing(job.id, state, words, extent=extent, real_s=real_s, port=port)
 
     def _go_on_or_hold(self, why: str, *, on: bool) -> None:
         if on:

@@ -27,6 +27,7 @@ from daemon.intake.scanner import is_scan
 from daemon.jobs.devices import program_of, seconds_of
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
+from daemon.jobs.wishes import settings_for
 from daemon.page.line_width import fit_line_width
 from daemon.page.prepare import even_out
 from daemon.program.file import program_text
@@ -58,7 +59,7 @@ def plan_picture(
 
     name: what people call the picture, if not by the path of `source`.
     """
-    stages, name = Stages(progress), name or str(source)
+    stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings)
     with stages("decode"):
         given = decode(source, max_megapixels=settings.intake.max_megapixels, name=name)
     with stages("page"):

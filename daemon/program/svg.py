@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from typing import TypeAlias
+
 from daemon.shapes import Stroke, Toolpath
+
+LineMm: TypeAlias = list[tuple[float, float]]
 
 
 def write_svg(
@@ -27,6 +32,19 @@ def write_svg(
         "</svg>",
     ]
     return "\n".join(rows) + "\n"
+
+
+def read_svg(text: str) -> list[LineMm]:
+    """The strokes that `write_svg` wrote: points (x, y) in mm from the upper left corner, y down; a dot has two.
+
+    Raises ValueError for a path of another form.
+    """
+    return [_points(path) for path in re.findall(r'<path d="M ([^"]*)"', text)]
+
+
+def _points(path: str) -> LineMm:
+    pairs = [place.split() for place in path.split(" L ")]
+    return [(float(x_mm), float(y_mm)) for x_mm, y_mm in pairs]
 
 
 def _path(stroke: Stroke, left_mm: float, top_mm: float) -> str:

@@ -7,12 +7,12 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event
 
 import pytest
 
 from daemon.errors import DiskTrouble
-from daemon.intake.inbox import Inbox, InboxWatch
+from daemon.intake.inbox import AT_ONCE, Inbox
 
 SETTLE_S = 1.0
 NOBODY = 65534
@@ -31,10 +31,14 @@ class Desk:
         self.full = False
         self.took = Event()
         self.inbox = Inbox(
-            self.inbox_dir, settle_s=SETTLE_S, claim=self.claim, refuse=self.refused.append, new_sheet=self.sheet
+            self.inbox_dir,
+            settle_s=SETTLE_S,
+            claim=self.claim,
+            refuse=self.refused.append,
+            signs={"NEXT": self.sheet},
         )
 
-    def claim(self, picture: Path) -> None:
+    def claim(self, picture: Path, beside: Path | None) -> None:
         if self.full:
             raise DiskTrouble("the disk is full: free it")
         picture.rename(self.taken_dir / f"{len(self.taken)}")
@@ -56,7 +60,7 @@ def desk(tmp_path: Path) -> Desk:
 
 def test_a_picture_that_was_closed_is_claimed_after_the_settling_time(desk: Desk) -> None:
     desk.drop("a.png")
-    desk.inbox.closed("a.png")
+    desk.inbox.notice("a.png", closed=True)
     assert desk.inbox.step(10.0) == 11.0
     desk.inbox.step(10.9)
     assert desk.taken == []
@@ -74,7 +78,7 @@ def test_a_picture_that_nobody_closed_settles_three_times_longer(desk: Desk) -> 
 def test_a_growing_picture_is_left_until_it_has_stopped(desk: Desk) -> None:
     for second in range(20):
         desk.drop("slow.png", "x" * second)
-        desk.inbox.closed("slow.png")
+        desk.inbox.notice("slow.png", closed=True)
         desk.inbox.step(second * 0.9)
     assert desk.taken == []
     desk.inbox.step(19 * 0.9 + SETTLE_S)
@@ -86,7 +90,8 @@ def test_two_hundred_pictures_are_claimed_in_the_order_in_which_they_came(desk: 
     for order, name in enumerate(reversed(names)):
         os.utime(desk.drop(name), ns=(order, order))
     desk.inbox.step(0.0)
-    desk.inbox.step(3.0)
+    for _ in range(200 // AT_ONCE):
+        desk.inbox.step(3.0)
     assert desk.taken == names[::-1]
 
 
@@ -188,31 +193,3 @@ def test_an_inbox_that_has_gone_is_told(desk: Desk) -> None:
     desk.inbox_dir.rmdir()
     with pytest.raises(DiskTrouble, match="make it again"):
         desk.inbox.step(0.0)
-
-
-@pytest.mark.parametrize("way", ["there before", "written", "renamed from .part", "moved in from outside"])
-def test_the_watch_finds_a_picture_however_it_arrives(tmp_path: Path, way: str) -> None:
-    desk = Desk(tmp_path)
-    desk.inbox = Inbox(desk.inbox_dir, settle_s=0.02, claim=desk.claim, refuse=print, new_sheet=desk.sheet)
-    if way == "there before":
-        desk.drop("a.png")
-    watch = InboxWatch(desk.inbox, desk.inbox_dir, trouble=print)
-    thread = Thread(target=watch.run)
-    thread.start()
-    try:
-        _arrive(desk, tmp_path, way)
-        assert desk.took.wait(10)
-    finally:
-        watch.stop()
-        thread.join(10)
-    assert desk.taken == ["a.png"]
-
-
-def _arrive(desk: Desk, outside: Path, way: str) -> None:
-    if way == "written":
-        desk.drop("a.png")
-    elif way == "renamed from .part":
-        desk.drop("a.png.part").rename(desk.inbox_dir / "a.png")
-    elif way == "moved in from outside":
-        (outside / "a.png").write_text("picture")
-        (outside / "a.png").rename(desk.inbox_dir / "a.png")

@@ -1,0 +1,182 @@
+"""Arrivals: a picture in the inbox becomes a job, or as many as its side file asks for."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from daemon.config import Settings
+from daemon.errors import DiskTrouble, SettingsError
+from daemon.intake.inbox import readable
+from daemon.intake.side import Wishes, parse, read_bytes
+from daemon.jobs.desk import Desk
+from daemon.jobs.folder import source_of
+from daemon.jobs.states import State
+from daemon.jobs.wishes import SIDE_NAME, with_wishes
+
+ARRIVAL_NAME = "arrival.json"
+"""In a job's folder: what its picture was called, how many copies are drawn, and of which job it is one."""
+_NOT_DRAWN = (State.FAILED, State.CANCELLED, State.INTERRUPTED)
+
+
+def free_bytes(folder: Path) -> int:
+    """What may still be written on the disk of this folder."""
+    disk = os.statvfs(folder)
+    return disk.f_bavail * disk.f_frsize
+
+
+class Arrivals:
+    """Takes pictures in. Every cut, at any moment, leaves each picture in the inbox or in a job that is found again."""
+
+    def __init__(self, desk: Desk, settings: Settings, *, free: Callable[[Path], int] = free_bytes) -> None:
+        self._desk, self._settings, self._free = desk, settings, free
+        self._jobs_of: dict[int, list[str]] | None = None
+        self._hashes: dict[str, str] = {}
+
+    def take(self, picture: Path, beside: Path | None) -> None:
+        """Make jobs of a picture and its side file, which then lie there no longer.
+
+        Raises SettingsError for a side file that is wrong, DiskTrouble, or FileNotFoundError; they then still do.
+        """
+        self._check_room()
+        name = readable(picture.name)
+        said, wishes = self._wishes(beside)
+        twin = self._twin(picture, said) if self._settings.intake.duplicates == "skip" else ""
+        copies = 1 if twin else wishes.copies
+        files = {ARRIVAL_NAME: _arrival(name, beside.name if beside else "", copies)}
+        if beside:
+            files[SIDE_NAME] = said
+        job = self._desk.folders.take(picture, files)
+        self._add([job], name, copies, beside)
+        if twin:
+            words = f"the same picture as job {twin} (duplicates = 'skip'): `linedrawd again {twin}` draws it anew"
+            self._desk.step(job, State.CANCELLED, words)
+
+    def recover(self, inbox: Path) -> None:
+        """After a start, before the desk: make the jobs whose pictures had come in but were not recorded."""
+        folders = self._desk.folders
+        folders.finish_claims(inbox)
+        for job in folders.strays({job.id for job in self._desk.journal.jobs()}):
+            arrival = _arrived(folders.path(job) / ARRIVAL_NAME)
+            if arrival is not None and self._desk.journal.job(job) is None:
+                beside = inbox / arrival["side"] if arrival["side"] else None
+                made = [job, *(_copies_of(folders.root, job) if arrival["copies"] > 1 else [])]
+                recorded = {each for each in made if self._desk.journal.job(each)}
+                self._add(made, arrival["name"], arrival["copies"], beside, recorded=recorded)
+
+    def _check_room(self) -> None:
+        floor_mb, root = self._settings.keep.free_mb, self._desk.folders.root
+        free_mb = self._free(root) / 1e6
+        if free_mb < floor_mb:
+            raise DiskTrouble(
+                f"only {free_mb:.0f} MB are free on the disk of {root}, no picture is taken below {floor_mb:g} MB: "
+                "free the disk or lower free_mb"
+            )
+
+    def _wishes(self, beside: Path | None) -> tuple[bytes, Wishes]:
+        if beside is None:
+            return b"", Wishes()
+        place = readable(beside.name)
+        try:
+            said = read_bytes(beside)
+        except FileNotFoundError:
+            raise
+        except OSError as error:
+            raise SettingsError(f"{place} cannot be read ({error.strerror}): put a file there that can") from None
+        wishes = parse(said, place)
+        with_wishes(self._settings, wishes, place)
+        return said, wishes
+
+    def _add(
+        self, made: list[str], name: str, copies: int, beside: Path | None, *, recorded: Iterable[str] = ()
+    ) -> None:
+        """The copies' folders first: a job that is recorded has them all. Then the side file, then the record.
+
+        made: the job whose folder holds the picture, and those of its copies that are there already.
+        """
+        job, folders = made[0], self._desk.folders
+        folder = folders.path(job)
+        source = source_of(folder)
+        assert source is not None
+        while len(made) < copies:
+            files = {ARRIVAL_NAME: _arrival(name, "", 1, of=job)}
+            if (folder / SIDE_NAME).exists():
+                files[SIDE_NAME] = (folder / SIDE_NAME).read_bytes()
+            made.append(folders.copy(source, files))
+        if beside is not None:
+            _remove_taken(beside, folder / SIDE_NAME)
+        # The one that knows of the copies comes last: until then a cut leaves it to be found, and them with it.
+        for each in reversed(made):
+            if each not in recorded:
+                self._desk.add(each, name)
+        self._remember(made)
+
+    def _twin(self, picture: Path, said: bytes) -> str:
+        """The job, drawn or still to be drawn, whose picture and side file are these, byte for byte; "" for none."""
+        journal = self._desk.journal
+        found = _hash(picture, said)
+        for job_id in self._known().get(picture.stat().st_size, []):
+            job = journal.job(job_id)
+            if job is not None and job.state not in _NOT_DRAWN and self._hash_of(job_id) == found:
+                return job_id
+        return ""
+
+    def _known(self) -> dict[int, list[str]]:
+        """The jobs by the size of their picture: most pictures are told apart by it and are never read for this."""
+        if self._jobs_of is None:
+            self._jobs_of = defaultdict(list)
+            self._remember([job.id for job in self._desk.journal.jobs()])
+        return self._jobs_of
+
+    def _remember(self, jobs: list[str]) -> None:
+        if self._jobs_of is None:
+            return
+        for job in jobs:
+            source = source_of(self._desk.folders.path(job))
+            if source is not None:
+                self._jobs_of[source.stat().st_size].append(job)
+
+    def _hash_of(self, job_id: str) -> str:
+        if job_id not in self._hashes:
+            folder = self._desk.folders.path(job_id)
+            source, side = source_of(folder), folder / SIDE_NAME
+            self._hashes[job_id] = "" if source is None else _hash(source, side.read_bytes() if side.exists() else b"")
+        return self._hashes[job_id]
+
+
+def _arrival(name: str, side: str, copies: int, *, of: str = "") -> bytes:
+    return json.dumps({"name": name, "side": side, "copies": copies, "copy_of": of}).encode()
+
+
+def _copies_of(root: Path, job: str) -> list[str]:
+    arrived = {path.parent.name: _arrived(path) for path in sorted(root.glob(f"*/{ARRIVAL_NAME}"))}
+    return [copy for copy, arrival in arrived.items() if arrival is not None and arrival["copy_of"] == job]
+
+
+def _arrived(path: Path) -> dict[str, Any] | None:
+    """None where a folder has none, or one that we have not written."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) and found.keys() == {"name", "side", "copies", "copy_of"} else None
+
+
+def _remove_taken(beside: Path, taken: Path) -> None:
+    """Only what was taken: another one may have been put in its place meanwhile."""
+    with suppress(OSError):
+        if taken.read_bytes() == beside.read_bytes():
+            beside.unlink()
+
+
+def _hash(picture: Path, said: bytes) -> str:
+    with picture.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256")
+    digest.update(said)
+    return digest.hexdigest()
