@@ -5,22 +5,28 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from daemon.errors import DiskTrouble, LinedrawError
 from daemon.jobs.folder import JobFolders
 from daemon.jobs.journal import Job, Journal
+from daemon.jobs.record import read_record, write_record
 from daemon.jobs.states import State
 
 DISK_RETRY_S = 10.0
 _INTERRUPTED = (
-    "the daemon ended while it was drawing, where the pen stands is unknown: look at the sheet, and drop the picture "
-    "into the inbox again to draw it anew"
+    "the daemon ended while it was drawing, where the pen stands is unknown ({paper}): look at the sheet, then "
+    "`linedrawd again JOB` draws it anew, `linedrawd resume JOB --from-stroke K` goes on"
 )
+_BEFORE_INK_ENDED = "the daemon ended before the first stroke: it is drawn when its turn comes"
+_GONE = "the folder of job {job} has gone, deleted by hand: drop the picture into the inbox again"
+_LOST = "the journal was lost and made again from the job folders: look at the sheet and at `linedrawd jobs`"
 _DROPPED = "a person dropped the job"
 _LOUD = {State.FAILED: logging.ERROR, State.INTERRUPTED: logging.ERROR, State.CANCELLED: logging.WARNING}
 _READY = (State.PLANNED, State.WAITING)
+_RECORDED = (State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED)
 _BEFORE_INK = (State.QUEUED, State.PLANNED, State.WAITING, State.INTERRUPTED)
 
 
@@ -58,16 +64,35 @@ class Desk:
     def recover(self, inbox: Path) -> None:
         """After a start: finish what the last daemon left half done. Nothing moves because of it."""
         self.folders.finish_claims(inbox)
-        for job_id in self.folders.strays({job.id for job in self.journal.jobs()}):
-            self.add(job_id, job_id)
+        self._adopt_strays()
         for job in self.journal.jobs(State.PLANNING):
             self.step(job.id, State.QUEUED, "the daemon ended while it was planning: it plans again")
         for job in self.journal.jobs(State.DRAWING):
-            self.step(job.id, State.INTERRUPTED, _INTERRUPTED)
-            self.cut_off = True
+            if not job.possible:
+                self.step(job.id, State.PLANNED, _BEFORE_INK_ENDED)
+                continue
+            # First: after a cut between the two nothing may start either.
             self.hold(f"job {job.id} was interrupted: look at the sheet, and set the pen to its origin again")
+            self.cut_off = True
+            self.step(job.id, State.INTERRUPTED, _INTERRUPTED.format(paper=job.on_paper))
+        for job in self.journal.jobs(State.QUEUED, *_READY):
+            if not self.folders.path(job.id).is_dir():
+                self.step(job.id, State.FAILED, _GONE.format(job=job.id))
         if self.held:
             self._show_held()
+
+    def _adopt_strays(self) -> None:
+        """Folders that the journal does not know: claimed just before a cut, or all of them where it was lost."""
+        lost = not self.journal.jobs()
+        for job_id in self.folders.strays({job.id for job in self.journal.jobs()}):
+            told = read_record(self.folders.path(job_id))
+            if told is None:
+                self.add(job_id, job_id)
+            else:
+                if lost and not self.held:
+                    self.hold(_LOST)
+                self.journal.adopt(told)
+                self.say("taken over from its folder", job=job_id, level=logging.WARNING, state=told.state.value)
 
     @property
     def held(self) -> str:
@@ -84,14 +109,20 @@ class Desk:
 
     def add(self, job_id: str, name: str) -> str:
         """Make a job of a folder that holds its picture. Returns its id. Raises DiskTrouble."""
-        self.journal.add(job_id, name)
+        self._record(self.journal.add(job_id, name))
         self.say("the picture is queued", job=job_id, state=State.QUEUED.value, name=name)
         self._show_queue()
         return job_id
 
     def step(self, job_id: str, state: State, words: str = "", **figures: Any) -> None:
         """Record the step and tell it. Raises DiskTrouble; the step has then not happened."""
-        self.journal.step(job_id, state, words)
+        before = self.journal.job(job_id)
+        job = self.journal.step(job_id, state, words)
+        if state in _RECORDED or (before and before.state is State.DRAWING):
+            self._record(job)
+        self._tell_step(state, words, job_id, figures)
+
+    def _tell_step(self, state: State, words: str, job_id: str, figures: dict[str, Any]) -> None:
         self._troubled = ("", "")
         level = _LOUD.get(state, logging.INFO)
         self.say(words or f"the job is {state.value}", job=job_id, level=level, state=state.value, **figures)
@@ -99,11 +130,30 @@ class Desk:
             self.show(last_error=words)
         self._show_queue()
 
+    def _record(self, job: Job) -> None:
+        try:
+            write_record(self.folders.path(job.id), job)
+        except (DiskTrouble, FileNotFoundError) as error:
+            self.trouble(f"the job's record is not up to date: {error}", job=job.id)
+
     def step_at_last(self, job_id: str, state: State, words: str, **figures: Any) -> None:
-        """As `step`, but a disk that takes nothing is waited for: what happened on paper must not be forgotten."""
+        """As `step`, but a full disk is waited for: what happened on paper must not be forgotten."""
+        self._at_last(job_id, lambda: self.step(job_id, state, words, **figures))
+
+    def end_drawing(self, job_id: str, state: State, words: str, *, extent: tuple[int, int], **figures: Any) -> None:
+        """A drawing is over. extent: strokes certainly drawn, and from which number on none is touched."""
+        certain, possible = extent
+
+        def step() -> None:
+            self._record(self.journal.end_drawing(job_id, state, words, certain=certain, possible=possible))
+            self._tell_step(state, words, job_id, figures)
+
+        self._at_last(job_id, step)
+
+    def _at_last(self, job_id: str, step: Callable[[], None]) -> None:
         while True:
             try:
-                return self.step(job_id, state, words, **figures)
+                return step()
             except DiskTrouble as error:
                 self.trouble(str(error), job=job_id)
                 self.wait(DISK_RETRY_S)
@@ -145,8 +195,16 @@ class Desk:
             if self._asks_for_sheets and self.journal.sheet_used:
                 self.let_wait("waiting for a new sheet: put one in and say `linedrawd next`")
                 return None
-            self.step(ready[0].id, State.DRAWING)
-            return ready[0]
+            return self._begin(ready[0])
+
+    def _begin(self, job: Job) -> Job | None:
+        try:
+            write_record(self.folders.path(job.id), replace(job, state=State.DRAWING))
+        except FileNotFoundError:
+            self.step(job.id, State.FAILED, _GONE.format(job=job.id))
+            return None
+        self.step(job.id, State.DRAWING)
+        return job
 
     def next_to_draw(self) -> Job | None:
         """The planned job that comes next, None where none is planned."""

@@ -6,32 +6,64 @@ import sqlite3
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from daemon.errors import DiskTrouble
+from daemon.jobs.folder import sync_folder
 from daemon.jobs.states import State, check_step
 
-VERSION = 1
-SCHEMA = """
+VERSION = 2
+SCHEMA = (
+    """
 CREATE TABLE IF NOT EXISTS events (
     number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, words TEXT NOT NULL
 )
-"""
+""",
+    """
+CREATE TABLE IF NOT EXISTS ink (
+    job TEXT PRIMARY KEY, strokes INTEGER NOT NULL, certain INTEGER NOT NULL, possible INTEGER NOT NULL
+)
+""",
+)
+"""events only grows. ink has one row for each job that may have touched a sheet: how far its pen may have come."""
+
+UNTOLD = 2**31 - 1
+"""Stands for strokes that may be drawn where nobody has written down how many."""
 _SHEET, _HELD, _GO = "new sheet", "held", "go"
 """Stand in the place of a state in the rows that belong to no job."""
+_DAMAGED = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What the journal knows of one job: its last step and the words that were said with it."""
+    """What the journal knows of one job: its last step and the words that were said with it.
+
+    The first `certain` of its `strokes` are certainly drawn, and none from number `possible` on has been touched; all
+    are 0 while no ink can be on the sheet.
+    """
 
     id: str
     name: str
     state: State
     words: str
     changed_s: float
+    strokes: int = 0
+    certain: int = 0
+    possible: int = 0
+
+    @property
+    def on_paper(self) -> str:
+        """Which strokes are certainly, possibly and not drawn, in words."""
+        if self.possible == UNTOLD:
+            return "how far it came is not known"
+        return f"of {self.strokes} strokes {self.certain} are certainly drawn, none from {self.possible} on is touched"
+
+
+class DamagedJournal(DiskTrouble):
+    """The file is no journal, or no longer one."""
 
 
 class Journal:
@@ -39,35 +71,66 @@ class Journal:
 
     Every method may be called from any thread and raises DiskTrouble where the file cannot be read or written; the
     step has then not happened. `sheet_used` is true from the first drawing after a new sheet came in; `held` says why
-    no job may start, and is empty when they may.
+    no job may start, and is empty when they may. Times are for people: the order is that of the rows.
     """
 
     def __init__(self, path: Path, *, now: Callable[[], float] = time.time) -> None:
+        """Raises DamagedJournal where the file is none, DiskTrouble where it is of a newer version or not to be had."""
         self._path, self._now, self._lock = path, now, threading.RLock()
         self._jobs: dict[str, Job] = {}
         self._counts: Counter[State] = Counter()
         self.sheet_used, self.held = False, ""
+        self._sheet_before = False
+        """Whether the sheet was used when the present drawing began."""
         try:
             self._rows = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
-            self._prepare()
+            try:
+                self._prepare()
+            except BaseException:
+                self._rows.close()
+                raise
         except sqlite3.Error as error:
-            raise DiskTrouble(f"the journal {path} cannot be opened ({error}): free the disk or move it away") from None
+            damaged = getattr(error, "sqlite_errorcode", 0) & 0xFF in _DAMAGED
+            kind = DamagedJournal if damaged else DiskTrouble
+            raise kind(f"the journal {path} cannot be opened ({error}): {_remedy(error)}, or move it away") from None
 
     def _prepare(self) -> None:
         (version,) = self._rows.execute("PRAGMA user_version").fetchone()
         if version > VERSION:
             raise DiskTrouble(f"the journal {self._path} is of a newer version ({version}): install that version again")
+        (found,) = self._rows.execute("PRAGMA quick_check(1)").fetchone()
+        if found != "ok":
+            raise DamagedJournal(f"the journal {self._path} is damaged ({found}): move it away")
         self._rows.execute("PRAGMA journal_mode=WAL")
         self._rows.execute("PRAGMA synchronous=FULL")
-        self._rows.execute(SCHEMA)
-        self._rows.execute(f"PRAGMA user_version={VERSION}")
-        for at_s, job, state, words in self._rows.execute(
-            "SELECT at_s, job, state, words FROM events ORDER BY number"
-        ).fetchall():
+        if version < VERSION:
+            self._make(version)
+        self._read()
+
+    def _make(self, version: int) -> None:
+        """The tables of this version, out of an older version's or of nothing; all of it or nothing."""
+        if version:
+            _back_up(self._rows, self._path.with_name(f"{self._path.name}.version-{version}"))
+        with self._together():
+            for table in SCHEMA:
+                self._rows.execute(table)
+            if version == 1:
+                # It did not write down how far a drawing came, so that every stroke of one that was begun is possible.
+                self._rows.execute(
+                    "INSERT OR IGNORE INTO ink SELECT DISTINCT job, 0, 0, ? FROM events WHERE state = ?",
+                    (UNTOLD, State.DRAWING.value),
+                )
+            self._rows.execute(f"PRAGMA user_version={VERSION}")
+
+    def _read(self) -> None:
+        rows = self._rows.execute("SELECT at_s, job, state, words FROM events ORDER BY number").fetchall()
+        for at_s, job, state, words in rows:
             if job:
                 self._remember(at_s, job, state, words)
             else:
                 self._note(state, words)
+        for job, *extent in self._rows.execute("SELECT job, strokes, certain, possible FROM ink").fetchall():
+            self._know(job, *extent)
 
     def jobs(self, *states: State) -> list[Job]:
         """The jobs in one of these states (none given: all), in the order in which they came."""
@@ -90,11 +153,42 @@ class Journal:
                 raise ValueError(f"job {job_id} is there already")
             return self._append(job_id, State.QUEUED.value, name)
 
+    def adopt(self, job: Job) -> None:
+        """Take over a job as its folder tells it, after a journal was lost."""
+        with self._lock, self._together():
+            self._insert_ink(job.id, job.strokes, job.certain, job.possible)
+            self._insert(job.id, State.QUEUED.value, job.name)
+            self._insert(job.id, job.state.value, job.words)
+        self._put(job)
+
     def step(self, job_id: str, state: State, words: str = "") -> Job:
         """The job goes on to `state`. Raises ValueError when the table of states lacks that step."""
         with self._lock:
             check_step(self._jobs[job_id].state, state)
             return self._append(job_id, state.value, words)
+
+    def promise(self, job_id: str, *, strokes: int, certain: int, possible: int) -> None:
+        """Before a byte of them is sent: the strokes before number `possible` may come onto the sheet.
+
+        strokes: of the whole job. certain: how many are certainly drawn. What has been written is never taken back.
+        """
+        with self._lock:
+            before = self._jobs[job_id]
+            extent = max(before.strokes, strokes), max(before.certain, certain), max(before.possible, possible)
+            self._insert_ink(job_id, *extent)
+            self._know(job_id, *extent)
+
+    def end_drawing(self, job_id: str, state: State, words: str, *, certain: int, possible: int) -> Job:
+        """The step that ends a drawing, and what is known then of the sheet, in one."""
+        with self._lock:
+            before = self._jobs[job_id]
+            check_step(before.state, state)
+            extent = before.strokes, certain, possible
+            with self._together():
+                self._insert_ink(job_id, *extent)
+                at_s = self._insert(job_id, state.value, words)
+            self._remember(at_s, job_id, state.value, words)
+            return self._know(job_id, *extent)
 
     def new_sheet(self) -> None:
         """A person has put a new sheet in."""
@@ -122,26 +216,85 @@ class Journal:
 
     def _insert(self, job_id: str, state: str, words: str) -> float:
         at_s = self._now()
-        try:
-            self._rows.execute(
-                "INSERT INTO events (at_s, job, state, words) VALUES (?, ?, ?, ?)", (at_s, job_id, state, words)
-            )
-        except sqlite3.Error as error:
-            raise DiskTrouble(f"the journal {self._path} cannot be written ({error}): free the disk") from None
+        self._write("INSERT INTO events (at_s, job, state, words) VALUES (?, ?, ?, ?)", (at_s, job_id, state, words))
         return at_s
+
+    def _insert_ink(self, job_id: str, strokes: int, certain: int, possible: int) -> None:
+        self._write("INSERT OR REPLACE INTO ink VALUES (?, ?, ?, ?)", (job_id, strokes, certain, possible))
+
+    @contextmanager
+    def _together(self) -> Iterator[None]:
+        """Everything in the block is written, or nothing of it."""
+        self._write("BEGIN IMMEDIATE")
+        try:
+            yield
+            self._write("COMMIT")
+        except BaseException:
+            if self._rows.in_transaction:
+                self._rows.execute("ROLLBACK")
+            raise
+
+    def _write(self, statement: str, values: tuple[float | str, ...] = ()) -> None:
+        try:
+            self._rows.execute(statement, values)
+        except sqlite3.Error as error:
+            raise DiskTrouble(f"the journal {self._path} cannot be written ({error}): {_remedy(error)}") from None
 
     def _remember(self, at_s: float, job_id: str, state: str, words: str) -> Job:
         before = self._jobs.get(job_id, Job(job_id, words, State.QUEUED, "", at_s))
         said = "" if job_id not in self._jobs else words
-        self._counts[State(state)] += 1
-        if job_id in self._jobs:
-            self._counts[before.state] -= 1
-        self._jobs[job_id] = replace(before, state=State(state), words=said, changed_s=at_s)
-        self.sheet_used = self.sheet_used or state == State.DRAWING.value
-        return self._jobs[job_id]
+        if state == State.DRAWING.value:
+            self._sheet_before, self.sheet_used = self.sheet_used, True
+        elif before.state is State.DRAWING and state == State.PLANNED.value:
+            self.sheet_used = self._sheet_before
+        return self._put(replace(before, state=State(state), words=said, changed_s=at_s))
+
+    def _put(self, job: Job) -> Job:
+        if job.id in self._jobs:
+            self._counts[self._jobs[job.id].state] -= 1
+        self._counts[job.state] += 1
+        self._jobs[job.id] = job
+        return job
+
+    def _know(self, job_id: str, strokes: int, certain: int, possible: int) -> Job:
+        known = replace(self._jobs[job_id], strokes=strokes, certain=certain, possible=possible)
+        self._jobs[job_id] = known
+        return known
 
     def _note(self, what: str, words: str) -> None:
         if what == _SHEET:
             self.sheet_used = False
         else:
             self.held = words if what == _HELD else ""
+
+
+def set_aside(path: Path) -> Path:
+    """Rename a damaged journal and what SQLite keeps beside it; returns its new name. Raises DiskTrouble."""
+    number = 1
+    while (aside := path.with_name(f"{path.name}.corrupt-{number}")).exists():
+        number += 1
+    try:
+        # The journal goes last: a cut before that finds it again, and damaged as it was.
+        for suffix in ("-wal", "-shm", ""):
+            if (part := path.with_name(path.name + suffix)).exists():
+                part.rename(aside.with_name(aside.name + suffix))
+        sync_folder(path.parent)
+    except OSError as error:
+        raise DiskTrouble(f"{path} cannot be moved aside ({error.strerror}): correct its folder's rights") from None
+    return aside
+
+
+def _back_up(rows: sqlite3.Connection, copy: Path) -> None:
+    """A copy of the whole journal, durable before anything is changed."""
+    part = copy.with_name(copy.name + ".part")
+    part.unlink(missing_ok=True)
+    with closing(sqlite3.connect(part)) as to:
+        to.execute("PRAGMA synchronous=FULL")
+        rows.backup(to)
+    part.rename(copy)
+    sync_folder(copy.parent)
+
+
+def _remedy(error: sqlite3.Error) -> str:
+    read_only = getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_READONLY
+    return "make its folder writable" if read_only else "free the disk"

@@ -26,11 +26,14 @@ ALLOWED: dict[State, frozenset[State]] = {
     State.PLANNING: _ENDS | {State.PLANNED, State.QUEUED},
     State.PLANNED: _ENDS | {State.WAITING, State.DRAWING},
     State.WAITING: _ENDS | {State.DRAWING},
-    State.DRAWING: _ENDS | {State.DONE, State.INTERRUPTED},
+    # Back to the planned ones: not one stroke of it has been touched.
+    State.DRAWING: _ENDS | {State.DONE, State.INTERRUPTED, State.PLANNED},
     State.DONE: frozenset(),
-    State.FAILED: frozenset(),
+    # Only where no ink is on the sheet, and a person says so: `retry`. A worker that crashed is tried once more.
+    State.FAILED: frozenset({State.QUEUED}),
     State.CANCELLED: frozenset(),
-    State.INTERRUPTED: frozenset({State.CANCELLED}),
+    # Only where a person says from which stroke on: `resume JOB --from-stroke K`.
+    State.INTERRUPTED: frozenset({State.CANCELLED, State.WAITING}),
 }
 """From each state to the ones that may follow; a step that is not here is a mistake in the code."""
 

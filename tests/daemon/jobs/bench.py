@@ -21,6 +21,7 @@ from daemon.jobs.orders import Places, rectangle_mm
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
+from daemon.machine.link import Promise, promise_nothing
 from daemon.program.file import load_program
 from daemon.shapes import Program
 from firmware_protocol.ink import Vector
@@ -48,6 +49,7 @@ class InstantMachine:
     lifted: int = 0
     programs: list[list[str]] = field(default_factory=list)
     corner_mm: tuple[float, float] = (0.0, 0.0)
+    promised: int = 0
 
     def open(self, heard: Callable[[Event], None], still: bool) -> InstantMachine:
         self.still, self.resting = still, ""
@@ -63,9 +65,10 @@ class InstantMachine:
     def connect(self) -> Ready:
         return Ready("Instant 1", 128)
 
-    def draw(self, program: Program) -> Ended:
+    def draw(self, program: Program, promise: Promise = promise_nothing) -> Ended:
         self.drawn += 1
         self.programs.append([line.text for line in program.lines])
+        self.promised = promise(program.strokes, 0) if program.strokes else 0
         for line in range(len(program.lines)):
             self.heard(Accepted(line))
         self.while_drawing()
@@ -190,6 +193,13 @@ class Bench:
         job = self.drop(name)
         self.planning.turn()
         return job
+
+    def begun(self, *, certain: int = 0, possible: int = 1) -> str:
+        """A planned job whose drawing has begun: so many strokes are promised."""
+        job = self.desk.begin_drawing()
+        assert job is not None
+        self.journal.promise(job.id, strokes=2, certain=certain, possible=possible)
+        return job.id
 
     def sayings(self) -> list[str]:
         return [words for words, _ in self.said]

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from daemon.errors import DiskTrouble
-from daemon.jobs.journal import Journal
+from daemon.jobs.journal import UNTOLD, DamagedJournal, Journal
+from daemon.jobs.open_journal import open_journal
 from daemon.jobs.states import State
 
 
@@ -85,14 +86,135 @@ def test_a_step_that_a_full_disk_refuses_has_not_happened(tmp_path: Path) -> Non
 
 def test_a_journal_of_a_newer_version_is_refused(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "j")) as newer:
-        newer.execute("PRAGMA user_version=2")
+        newer.execute("PRAGMA user_version=3")
     with pytest.raises(DiskTrouble, match="newer version"):
         Journal(tmp_path / "j")
 
 
-def test_a_file_that_is_no_journal_is_refused_with_a_sentence(tmp_path: Path) -> None:
+def test_a_file_that_is_no_journal_is_damaged_and_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "j").write_bytes(b"not a database" * 100)
-    with pytest.raises(DiskTrouble, match="cannot be opened"):
+    with pytest.raises(DamagedJournal, match="cannot be opened"):
+        Journal(tmp_path / "j")
+    assert (tmp_path / "j").read_bytes() == b"not a database" * 100
+
+
+def in_drawing(path: Path) -> Journal:
+    journal = Journal(path)
+    journal.add("1", "house.png")
+    for state in (State.PLANNING, State.PLANNED, State.DRAWING):
+        journal.step("1", state)
+    return journal
+
+
+def test_a_promise_is_on_disk_when_the_call_returns(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal, closing(sqlite3.connect(tmp_path / "j")) as other:
+        journal.promise("1", strokes=9, certain=2, possible=4)
+        assert other.execute("SELECT * FROM ink").fetchall() == [("1", 9, 2, 4)]
+
+
+def test_a_promise_is_never_taken_back_by_another(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        journal.promise("1", strokes=9, certain=2, possible=4)
+        journal.promise("1", strokes=9, certain=1, possible=3)
+    with closing(Journal(tmp_path / "j")) as journal:
+        (job,) = journal.jobs()
+        assert (job.strokes, job.certain, job.possible) == (9, 2, 4)
+
+
+def test_a_promise_that_a_full_disk_refuses_is_none(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        with full_disk(64), pytest.raises(DiskTrouble, match="free the disk"):
+            journal.promise("1", strokes=9, certain=0, possible=4)
+        assert journal.jobs()[0].possible == 0
+
+
+def test_the_end_of_a_drawing_says_what_its_verdict_knows(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        journal.promise("1", strokes=9, certain=0, possible=8)
+        journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5)
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert journal.jobs()[0].on_paper == "of 9 strokes 3 are certainly drawn, none from 5 on is touched"
+        assert journal.jobs()[0].state is State.INTERRUPTED
+
+
+def test_an_end_that_a_full_disk_refuses_has_not_happened(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        journal.promise("1", strokes=9, certain=0, possible=8)
+        with full_disk(64), pytest.raises(DiskTrouble):
+            journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5)
+        assert (journal.jobs()[0].state, journal.jobs()[0].possible) == (State.DRAWING, 8)
+        journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5)
+
+
+def test_a_sheet_on_which_nothing_was_drawn_is_unused_again(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        journal.step("1", State.PLANNED)
+        assert not journal.sheet_used
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert not journal.sheet_used
+
+
+def test_a_read_only_journal_says_what_to_do(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        journal._rows.execute("PRAGMA query_only=ON")
+        with pytest.raises(DiskTrouble, match=r"readonly.*make its folder writable"):
+            journal.step("1", State.FAILED)
+
+
+def test_a_clock_that_jumps_changes_no_order(tmp_path: Path) -> None:
+    times = iter([5e9, -7.0, 0.0])
+    with closing(Journal(tmp_path / "j", now=lambda: next(times))) as journal:
+        for job in "abc":
+            journal.add(job, f"{job}.png")
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert [job.id for job in journal.jobs()] == ["a", "b", "c"]
+
+
+V1 = "CREATE TABLE events (number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, "
+
+
+def older(path: Path) -> None:
+    with closing(sqlite3.connect(path, isolation_level=None)) as rows:
+        rows.execute(V1 + "words TEXT NOT NULL)")
+        for job, state, words in [("1", "queued", "a.png"), ("1", "drawing", ""), ("2", "queued", "b.png")]:
+            rows.execute("INSERT INTO events (at_s, job, state, words) VALUES (1.0, ?, ?, ?)", (job, state, words))
+        rows.execute("PRAGMA user_version=1")
+
+
+def test_a_journal_of_an_older_version_is_migrated_and_kept(tmp_path: Path) -> None:
+    older(tmp_path / "j")
+    with closing(Journal(tmp_path / "j")) as journal:
+        drawn, queued = journal.jobs()
+        assert (drawn.possible, drawn.on_paper) == (UNTOLD, "how far it came is not known")
+        assert queued.possible == 0
+    with closing(sqlite3.connect(tmp_path / "j.version-1")) as backup:
+        assert backup.execute("PRAGMA user_version").fetchone() == (1,)
+        assert len(backup.execute("SELECT * FROM events").fetchall()) == 3
+
+
+def test_a_migration_that_a_full_disk_breaks_off_leaves_the_old_one(tmp_path: Path) -> None:
+    older(tmp_path / "j")
+    with full_disk(64), pytest.raises(DiskTrouble):
+        Journal(tmp_path / "j")
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert len(journal.jobs()) == 2
+
+
+def test_a_damaged_journal_is_set_aside_and_no_earlier_one_is_overwritten(tmp_path: Path) -> None:
+    said: list[str] = []
+    for _ in range(2):
+        (tmp_path / "j").write_bytes(b"not a database" * 100)
+        open_journal(tmp_path / "j", say=lambda words, level: said.append(words)).close()
+    assert (tmp_path / "j.corrupt-1").read_bytes() == (tmp_path / "j.corrupt-2").read_bytes()
+    assert "kept as j.corrupt-2" in said[1]
+
+
+def test_a_journal_of_which_a_page_was_overwritten_is_damaged(tmp_path: Path) -> None:
+    in_drawing(tmp_path / "j").close()
+    pages = bytearray((tmp_path / "j").read_bytes())
+    pages[4096 : 2 * 4096] = bytes(4096)
+    (tmp_path / "j").write_bytes(pages)
+    with pytest.raises(DamagedJournal):
         Journal(tmp_path / "j")
 
 

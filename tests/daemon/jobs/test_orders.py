@@ -56,7 +56,7 @@ def test_a_stop_just_before_the_first_line_draws_nothing(bench: Bench) -> None:
     bench.planned()
     bench.before_drawing = bench.runner.stop
     bench.drawing.turn()
-    assert bench.states() == ["interrupted"]
+    assert bench.states() == ["planned"]
     assert bench.machine.drawn == 0
 
 
@@ -116,7 +116,7 @@ def test_a_job_that_is_over_cannot_be_cancelled(bench: Bench) -> None:
 def test_a_job_found_in_drawing_is_interrupted_its_pen_is_lifted_and_nothing_else_starts(bench: Bench) -> None:
     bench.planned("a.png")
     bench.planned("b.png")
-    bench.desk.begin_drawing()
+    bench.begun()
     after = bench.restarted()
     for _ in range(3):
         after.drawing.turn()
@@ -134,7 +134,7 @@ def test_a_job_found_in_drawing_is_interrupted_its_pen_is_lifted_and_nothing_els
 
 def test_a_pen_that_was_left_down_is_lifted_as_soon_as_the_machine_is_found(bench: Bench) -> None:
     bench.planned()
-    bench.desk.begin_drawing()
+    bench.begun()
     after = bench.restarted()
     after.machine.missing = NoMachine("no adapter: plug it in")
     after.drawing.turn()
@@ -147,7 +147,7 @@ def test_a_pen_that_was_left_down_is_lifted_as_soon_as_the_machine_is_found(benc
 
 def test_a_pen_that_cannot_be_lifted_is_said_once(bench: Bench) -> None:
     bench.planned()
-    bench.desk.begin_drawing()
+    bench.begun()
     after = bench.restarted()
     after.machine.missing = MachineFault("the controller is locked: unlock it")
     for _ in range(2):

@@ -1,0 +1,46 @@
+"""A job's record in its own folder: what a journal that was lost is made again from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+from daemon.jobs.folder import write_durably
+from daemon.jobs.journal import UNTOLD, Job
+from daemon.jobs.states import State
+
+RECORD_NAME = "job.json"
+_ENDS = (State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED)
+_LOST = "the journal was lost and nobody has written down how far this drawing came: look at the sheet"
+
+
+def write_record(folder: Path, job: Job) -> None:
+    """`drawing` before the first ink may come, and what became of it after the last, each time whole and durable.
+
+    Raises DiskTrouble, and FileNotFoundError where the folder has gone.
+    """
+    told = {"name": job.name, "state": job.state.value, "words": job.words, "changed_s": job.changed_s}
+    told |= {"strokes": job.strokes, "certain": job.certain, "possible": job.possible}
+    write_durably(folder / RECORD_NAME, json.dumps(told).encode())
+
+
+def read_record(folder: Path) -> Job | None:
+    """The job as its folder tells it: where ink may have come that nobody counted it is interrupted, never queued.
+
+    None where nothing was ever drawn and nothing recorded.
+    """
+    try:
+        told = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
+        extent = int(told["strokes"]), int(told["certain"]), int(told["possible"])
+        job = Job(
+            folder.name, str(told["name"]), State(told["state"]), str(told["words"]), float(told["changed_s"]), *extent
+        )
+    except FileNotFoundError:
+        planned = (folder / "program.gcode").exists()
+        return Job(folder.name, folder.name, State.INTERRUPTED, _LOST, 0.0, possible=UNTOLD) if planned else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return Job(folder.name, folder.name, State.INTERRUPTED, _LOST, 0.0, possible=UNTOLD)
+    if job.state is State.DRAWING:
+        return replace(job, state=State.INTERRUPTED, words=_LOST, possible=UNTOLD)
+    return job if job.state in _ENDS else replace(job, state=State.QUEUED, words="")
