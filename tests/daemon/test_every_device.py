@@ -51,7 +51,7 @@ def farthest_mm(lines: list[Points], others: list[Points]) -> float:
 
 def drawn(daemon: Daemon) -> Job:
     shutil.copyfile(HOUSE, daemon.settings.paths.inbox / "house.png")
-    (job,) = daemon.wait_for(ended)
+    (job,) = daemon.wait_for(ended, within_s=180.0)
     assert job.state is State.DONE, job.words
     return job
 

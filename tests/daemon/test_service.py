@@ -38,9 +38,9 @@ class Daemon:
     def drop(self, name: str, text: str = "good") -> None:
         (self.settings.paths.inbox / name).write_text(text)
 
-    def wait_for(self, true: Callable[[list[Job]], object]) -> list[Job]:
-        """Sleeps on the desk's own bell, at most half a minute."""
-        desk, until = self.parts.desk, time.monotonic() + 30.0
+    def wait_for(self, true: Callable[[list[Job]], object], *, within_s: float = 30.0) -> list[Job]:
+        """Sleeps on the desk's own bell."""
+        desk, until = self.parts.desk, time.monotonic() + within_s
         while True:
             seen, jobs = desk.changes, desk.journal.jobs()
             if true(jobs):
