@@ -111,8 +111,8 @@ class Arrivals:
             made.append(folders.copy(source, files))
         if beside is not None:
             _remove_taken(beside, folder / SIDE_NAME)
-        # The one that knows of the copies comes last: until then a cut leaves it to be found, and them with it.
-        for each in reversed(made):
+        # Not before all of them have their folders: what is recorded is not looked at again after a cut.
+        for each in made:
             if each not in recorded:
                 self._desk.add(each, name)
         self._remember(made)

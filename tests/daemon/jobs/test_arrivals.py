@@ -1,0 +1,222 @@
+"""A picture and its side file become jobs, each copy once, wherever the power is cut."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from daemon.config import Options, Settings, load_settings
+from daemon.errors import DiskTrouble, SettingsError
+from daemon.jobs.arrivals import Arrivals
+from daemon.jobs.desk import Desk
+from daemon.jobs.folder import JobFolders, source_of
+from daemon.jobs.journal import Journal
+from daemon.jobs.states import State
+from daemon.jobs.wishes import SIDE_NAME, settings_for
+from tests.daemon.jobs.test_folder import drop
+
+WISHES = b"copies = 2\nsize_mm = 40\n"
+
+
+class Intake:
+    """An inbox, a state folder, and what takes pictures from the one to the other."""
+
+    def __init__(self, root: Path, intake: str = "", *, free: Callable[[Path], int] = lambda folder: 10**12) -> None:
+        self.inbox, file = root / "inbox", root / "linedrawd.toml"
+        self.inbox.mkdir(exist_ok=True)
+        file.write_text(f"[intake]\n{intake}\n")
+        self.settings: Settings = load_settings(Options(config=file, state_dir=root), environment={"HOME": str(root)})
+        self.journal = Journal(root / "journal.sqlite")
+        self.folders = JobFolders(root / "jobs")
+        self.desk = Desk(self.journal, self.folders, say=_silent, show=_silent, asks_for_sheets=False)
+        self.arrivals = Arrivals(self.desk, self.settings, free=free)
+
+    def take(self, name: str = "house.png", side: str | None = "house.toml") -> None:
+        self.arrivals.take(self.inbox / name, self.inbox / side if side else None)
+
+    def recover(self) -> None:
+        self.arrivals.recover(self.inbox)
+        self.desk.recover(self.inbox)
+
+    def states(self) -> list[str]:
+        return [job.state.value for job in self.journal.jobs()]
+
+
+def _silent(*_: Any, **__: Any) -> None:
+    pass
+
+
+def test_a_side_file_asks_for_copies_and_goes_into_the_folder_of_each(tmp_path: Path) -> None:
+    intake = Intake(tmp_path)
+    drop(intake.inbox, "Häuschen.png")
+    drop(intake.inbox, "Häuschen.toml", WISHES)
+    intake.take("Häuschen.png", "Häuschen.toml")
+    jobs = intake.journal.jobs()
+    assert [job.name for job in jobs] == ["Häuschen.png"] * 2
+    assert [(intake.folders.path(job.id) / SIDE_NAME).read_bytes() for job in jobs] == [WISHES] * 2
+    assert list(intake.inbox.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("said", "sentence"),
+    [
+        (b"machine = 'plottre'", "house.toml: machine 'plottre' is unknown: did you mean plotter?"),
+        (b"[pen]\ndown_nm = 1", "house.toml: [pen] down_nm is unknown: did you mean down_mm?"),
+        (b"[pen]\ndown_mm = 'low'", "house.toml: [pen] down_mm: Input should be a valid number"),
+        (b"[pen]\ndown_mm = 9", "house.toml: pen.up_mm = 5 must be above pen.down_mm = 9"),
+        (b"[pen]\nkind = 'servo'", "house.toml: [pen] kind belongs to the machine: leave it out"),
+        (b"size_mn = 1", "house.toml: size_mn is unknown: did you mean size_mm?"),
+    ],
+)
+def test_a_wrong_side_file_is_refused_and_everything_stays_where_it_is(
+    tmp_path: Path, said: bytes, sentence: str
+) -> None:
+    intake = Intake(tmp_path)
+    drop(intake.inbox, "house.png")
+    drop(intake.inbox, "house.toml", said)
+    with pytest.raises(SettingsError) as caught:
+        intake.take()
+    assert sentence in str(caught.value)
+    assert sorted(path.name for path in intake.inbox.iterdir()) == ["house.png", "house.toml"]
+    assert intake.states() == []
+
+
+def test_a_side_file_that_is_a_link_is_refused(tmp_path: Path) -> None:
+    intake = Intake(tmp_path)
+    drop(intake.inbox, "house.png")
+    (intake.inbox / "house.toml").symlink_to("/etc/passwd")
+    with pytest.raises(SettingsError, match=r"house\.toml cannot be read"):
+        intake.take()
+
+
+def test_the_job_is_planned_by_its_own_wishes(tmp_path: Path) -> None:
+    intake = Intake(tmp_path)
+    folder = tmp_path / "000001-house"
+    folder.mkdir()
+    assert settings_for(folder, intake.settings) == intake.settings
+    (folder / SIDE_NAME).write_bytes(b"size_mm = [40, 30]\n[pen]\ndown_mm = -1\n")
+    settings = settings_for(folder, intake.settings)
+    assert settings.sheet.box_mm == (40.0, 30.0)
+    assert settings.machines["plotter"].pen.model_dump()["down_mm"] == -1
+    assert intake.settings.sheet.box_mm == (64.0, 64.0)
+
+
+class Cut(BaseException):
+    """The power goes."""
+
+
+@pytest.fixture(params=["same disk", "other disk"])
+def cuts(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The first entry counts down the changes of files until the cut; the others count up for ever."""
+    left = [-1]
+    rename = Path.rename
+
+    def counted(work: Callable[..., Any]) -> Callable[..., Any]:
+        def step(*args: Any, **options: Any) -> Any:
+            if left[0] == 0:
+                raise Cut
+            left[0] -= 1
+            return work(*args, **options)
+
+        return step
+
+    def across(self: Path, target: Path) -> Path:
+        if "inbox" in self.parts and "jobs" in Path(target).parts:
+            raise OSError(errno.EXDEV, "Invalid cross-device link")
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "rename", counted(across if request.param == "other disk" else rename))
+    for name in ("unlink", "mkdir"):
+        monkeypatch.setattr(Path, name, counted(getattr(Path, name)))
+    monkeypatch.setattr(os, "fsync", counted(lambda descriptor: None))
+    monkeypatch.setattr(Journal, "add", counted(Journal.add))
+    return left
+
+
+def test_no_cut_loses_or_doubles_a_copy(tmp_path: Path, cuts: list[int]) -> None:
+    for steps in range(500):
+        cuts[0] = -1
+        root = tmp_path / str(steps)
+        root.mkdir()
+        intake = Intake(root)
+        drop(intake.inbox, "house.png")
+        drop(intake.inbox, "house.toml", WISHES)
+        cuts[0] = steps
+        try:
+            intake.take()
+        except Cut:
+            finished = False
+        else:
+            finished = True
+        cuts[0] = -1
+        intake.journal.close()
+        _after_the_cut(root)
+        if finished:
+            assert steps > 15
+            return
+    pytest.fail("it never came to its end")
+
+
+def _after_the_cut(root: Path) -> None:
+    intake = Intake(root)
+    intake.recover()
+    if (intake.inbox / "house.png").exists():
+        intake.take()
+    jobs = intake.journal.jobs()
+    assert len(jobs) == 2
+    for job in jobs:
+        source = source_of(intake.folders.path(job.id))
+        assert source is not None
+        assert source.read_bytes() == b"picture"
+        assert (intake.folders.path(job.id) / SIDE_NAME).read_bytes() == WISHES
+        assert job.name == "house.png"
+    assert list(intake.inbox.iterdir()) == []
+    intake.journal.close()
+
+
+def test_the_same_picture_twice_is_drawn_twice(tmp_path: Path) -> None:
+    intake = Intake(tmp_path)
+    for name in ("a.png", "b.png"):
+        drop(intake.inbox, name)
+        intake.take(name, None)
+    assert intake.states() == ["queued", "queued"]
+
+
+def test_the_same_picture_twice_is_drawn_once_where_duplicates_are_skipped(tmp_path: Path) -> None:
+    for name, data in (("a.png", b"picture"), ("b.png", b"picture"), ("c.png", b"another")):
+        intake = Intake(tmp_path, "duplicates = 'skip'")
+        drop(intake.inbox, name, data)
+        intake.take(name, None)
+        words = intake.journal.jobs()[-1].words
+        intake.journal.close()
+        if name == "b.png":
+            assert words.startswith("the same picture as job 000001-a (duplicates = 'skip')")
+    assert intake.states() == ["queued", "cancelled", "queued"]
+    assert list(intake.inbox.iterdir()) == []
+
+
+def test_a_picture_that_was_not_drawn_or_is_wished_otherwise_is_no_duplicate(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, "duplicates = 'skip'")
+    drop(intake.inbox, "a.png")
+    intake.take("a.png", None)
+    intake.desk.step(intake.journal.jobs()[0].id, State.FAILED, "it could not be planned")
+    drop(intake.inbox, "a.png")
+    intake.take("a.png", None)
+    drop(intake.inbox, "a.png")
+    drop(intake.inbox, "a.toml", b"size_mm = 40")
+    intake.take("a.png", "a.toml")
+    assert intake.states() == ["failed", "queued", "queued"]
+
+
+def test_below_the_floor_of_free_disk_no_picture_is_taken(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, free=lambda folder: 150_000_000)
+    drop(intake.inbox, "house.png")
+    with pytest.raises(DiskTrouble, match=r"only 150 MB are free .* below 200 MB: free the disk or lower free_mb"):
+        intake.take(side=None)
+    assert (intake.inbox / "house.png").exists()
+    assert list(intake.folders.root.iterdir()) == []
