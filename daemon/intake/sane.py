@@ -34,7 +34,7 @@ _WORDS = {
     r"open of device .* failed: Device busy": _STATUSES[BUSY],
     r"open of device .* failed: (Access|Permission)": _STATUSES[11],
     r"open of device .* failed: Error during device I/O": _STATUSES[9],
-    r"setting of option|unrecognized option|option .* not supported|ambiguous|bad value": _STATUSES[4],
+    r"setting of option|inactive option|unrecognized option|option .* not supported|ambiguous|bad value": _STATUSES[4],
     r"cannot open .*\.part|[Nn]o space left": "the page cannot be written: make room on the disk of the inbox",
 }
 """What scanimage says on stderr where its exit code alone says less."""

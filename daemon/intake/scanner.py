@@ -79,8 +79,12 @@ class Scanner:
         """
         with self._alone():
             stamp, pages = self._stamp(), list[Path]()
+
+            def deliver(name: str) -> None:
+                pages.append(self._deliver(spool / Path(name).name, stamp, len(pages) + 1))
+
             with spool_in(self._inbox) as spool:
-                ended = self._patiently(spool, lambda name: pages.append(self._deliver(spool / Path(name).name, stamp)))
+                ended = self._patiently(spool, deliver)
             if ended.code or ended.overdue or ended.stopped or not pages:
                 raise ScannerTrouble(_with_pages(self._why(ended), len(pages)))
         return f"{_pages(len(pages))} scanned into the inbox"
@@ -147,7 +151,7 @@ class Scanner:
         arguments += [] if _FEEDER.search(wanted.source) else ["--batch-count=1"]
         arguments += [*(f"--{name}={value}" for name, value in said.items() if value), *_options(wanted.options)]
         if wanted.size_mm:
-            arguments += ["-l", "0", "-t", "0", "-x", f"{wanted.size_mm[0]:g}", "-y", f"{wanted.size_mm[1]:g}"]
+            arguments += ["-x", f"{wanted.size_mm[0]:g}", "-y", f"{wanted.size_mm[1]:g}"]
         return arguments
 
     def _device(self) -> str:
@@ -180,12 +184,11 @@ class Scanner:
             )
         return trouble_of(ended.code or 5, ended.words)
 
-    def _deliver(self, page: Path, stamp: str) -> Path:
+    def _deliver(self, page: Path, stamp: str, number: int) -> Path:
         """Into the inbox by one rename, when it is on the disk."""
         try:
             with page.open("rb") as file:
                 os.fsync(file.fileno())
-            number = 1
             while (name := self._inbox / f"scan-{stamp}-{number}.tiff").exists():
                 number += 1
             return page.rename(name)

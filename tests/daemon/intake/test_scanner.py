@@ -51,7 +51,7 @@ def test_it_is_asked_for_one_page_of_the_glass_as_tiff_in_a_batch(tmp_path: Path
     assert Path(spool).parent == scans.inbox
     assert call.replace(spool, "SPOOL") == (
         "-d fake:0 --format=tiff --batch-print --batch=SPOOL/%d.tiff --batch-count=1 --source=Flatbed --mode=Color "
-        "--resolution=600 --brightness=10 --button-update -l 0 -t 0 -x 210 -y 297"
+        "--resolution=600 --brightness=10 --button-update -x 210 -y 297"
     )
 
 
@@ -67,6 +67,22 @@ def test_a_second_scan_of_the_same_second_replaces_nothing(tmp_path: Path) -> No
         scans.scanner.scan()
         scans.scanner.scan()
         assert scans.pages == ["scan-20261124-125043-1.tiff", "scan-20261124-125043-2.tiff"]
+
+
+def test_pages_that_are_claimed_at_once_still_have_names_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    claimed, rename = list[str](), Path.rename
+
+    def rename_and_claim(page: Path, name: Path) -> Path:
+        rename(page, name).unlink()
+        claimed.append(name.name)
+        return name
+
+    with fake(tmp_path, {"pages": 3}, wanted=FEEDER) as scans:
+        monkeypatch.setattr(Path, "rename", rename_and_claim)
+        scans.scanner.scan()
+    assert claimed == [f"scan-20261124-125043-{number}.tiff" for number in (1, 2, 3)]
 
 
 def test_the_only_scanner_is_taken_and_cameras_are_none(tmp_path: Path) -> None:
