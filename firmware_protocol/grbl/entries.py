@@ -85,6 +85,8 @@ def _streaming(talk: Conversation, _: Cause) -> None:
 
 
 def _ready(talk: Conversation, cause: Cause) -> None:
+    if cause.before is State.HOMING:
+        talk.controller.place_mm = None  # what was reported before was counted from elsewhere
     if talk.job is None:
         talk.events.append(Ready(talk.controller.firmware or "", talk.controller.buffer_bytes))
         return

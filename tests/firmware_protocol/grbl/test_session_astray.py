@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from firmware_protocol.grbl.simulator.faults import FlipByte
 from firmware_protocol.session import Accepted, Ended, Found, Verdict
-from tests.firmware_protocol.grbl.driver import DONE, Line, drawing
+from tests.firmware_protocol.grbl.driver import ALARM, BANNER, DONE, INFO, SETTINGS, UNLOCK, Line, Play, drawing
 from tests.firmware_protocol.grbl.pair import FAST, Pair, plotter, stroke_lines
 
 COMB = [[(2.0 * x, 0.0), (2.0 * x, 10.0)] for x in range(8)]
@@ -27,6 +27,20 @@ def test_two_reports_off_the_path_stop_the_job() -> None:
     assert (end.verdict, end.position_known, end.pen_lifted) == (Verdict.ASTRAY, True, True)
     assert (end.strokes_certain, end.strokes_possible) == (0, 2)
     assert "the pen was seen at (1, 4, 0) mm" in end.why
+
+
+def test_homing_leads_no_pen_off_the_path_of_a_job_that_begins_at_once() -> None:
+    play = Play(home=True)
+    play.say(BANNER, UNLOCK)
+    play.say(ALARM)
+    play.say(*INFO)
+    play.say(*SETTINGS)
+    play.say("ok")
+    play.start(Line("G21 G90"), Line("G0 Z-4"), Line("G0 X-77 Y-88", 0), Line("G1 Z-8 F900", 0))
+    home = "<Idle|MPos:-99.000,-99.000,-1.000|FS:0,0>"
+    for _ in range(4):
+        assert b"!" not in play.say(home)
+        play.wait(0.3)
 
 
 def test_an_answer_too_many_stops_the_job() -> None:
