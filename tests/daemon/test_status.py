@@ -99,3 +99,20 @@ def test_a_status_that_cannot_be_written_stops_nothing(tmp_path: Path) -> None:
     board.change(state="drawing")
     board.tick(2.0)
     assert state(tmp_path / "gone" / "status.json") == "drawing"
+
+
+def test_a_full_log_is_set_aside_and_only_so_many_are_kept(tmp_path: Path) -> None:
+    (tmp_path / "jobs" / "000001-a").mkdir(parents=True)
+    diary = Diary(tmp_path / "log", tmp_path / "jobs", log_mb=0.001, log_files=2)
+    try:
+        for number in range(100):
+            diary.say(f"event {number}", job="000001-a")
+    finally:
+        diary.close()
+    logs = {path.name: path for path in (tmp_path / "log").iterdir()}
+    assert set(logs) == {"linedrawd.log", "linedrawd.log.1", "linedrawd.log.2"}
+    assert all(path.stat().st_size < 1100 for path in logs.values())
+    text = "".join(logs[name].read_text() for name in sorted(logs, reverse=True))
+    told = [int(number) for number in re.findall(r"event (\d+)", text)]
+    assert told == list(range(told[0], 100))
+    assert (tmp_path / "jobs" / "000001-a" / "job.log").stat().st_size < 1100
