@@ -14,7 +14,6 @@ from daemon.shapes import Program, ProgramLine
 from firmware_protocol.session import Ended, Verdict
 from tests.daemon.jobs.bench import Bench, fault
 
-
 NAMES = ("done", "cut", "begun", "planned", "dropped")
 
 
