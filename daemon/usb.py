@@ -7,6 +7,8 @@ from typing import Any
 
 import usb.core
 
+from daemon.errors import NoMachine
+
 
 @dataclass(frozen=True, slots=True)
 class UsbDevice:
@@ -55,3 +57,22 @@ def _classes(device: Any) -> set[tuple[int, int]]:
     except usb.core.USBError:
         # A device that has just been unplugged still stands in the list.
         return own
+
+
+def reset(place: str, *, backend: Any = None) -> None:
+    """Have the device at this place begin anew, as if it had been unplugged; its serial port goes and comes back.
+
+    place: as in `UsbDevice`. backend: as for `inventory`. Raises NoMachine when it is not there or may not be reset.
+    """
+    try:
+        devices = usb.core.find(find_all=True, backend=backend)
+        device = next((device for device in devices if _device(device).place == place), None)
+        if device is None:
+            raise NoMachine(f"nothing is plugged in at USB {place}: `linedrawd usb` lists what is")
+        device.reset()
+    except usb.core.NoBackendError:
+        raise NoMachine("nothing on the USB can be reset without libusb: install libusb-1.0-0") from None
+    except usb.core.USBError as fault:
+        raise NoMachine(
+            f"the device at USB {place} cannot be reset ({fault}): unplug it and plug it in again"
+        ) from None

@@ -53,7 +53,7 @@ def _event_parser() -> argparse.ArgumentParser:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from daemon.cli import control, draw, machine, models, plan, replay, scan, serve, simulate, status  # noqa: PLC0415
+    from daemon.cli import control, draw, machine, models, plan, replay, scan, serve, simulate, status, usb  # noqa: PLC0415
     from daemon.cli.options import add_machine, add_places, add_record  # noqa: PLC0415
     from daemon.cli.scan import add_scanner  # noqa: PLC0415
 
@@ -70,7 +70,7 @@ def _parser() -> argparse.ArgumentParser:
     add_record(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, scan, control, machine, status, models, simulate, replay):
+    for group in (plan, draw, scan, control, machine, status, usb, models, simulate, replay):
         group.add_parser(subparsers)
     return parser
 

@@ -11,6 +11,7 @@ import usb.backend
 import usb.core
 
 from daemon import usb as door
+from daemon.errors import NoMachine
 from daemon.usb import UsbDevice, UsbInventory
 
 
@@ -19,6 +20,8 @@ class Bus(usb.backend.IBackend):  # type: ignore[misc]
 
     def __init__(self, *devices: tuple[int, int, int, tuple[int, ...], int | None, int]) -> None:
         self._devices = devices
+        self.reset = list[Any]()
+        self.stuck = False
 
     def enumerate_devices(self) -> Iterator[Any]:
         return iter(self._devices)
@@ -45,6 +48,17 @@ class Bus(usb.backend.IBackend):  # type: ignore[misc]
                           bInterfaceClass=dev[4], bInterfaceSubClass=dev[5], bInterfaceProtocol=0, iInterface=0,
                           extra_descriptors=[])  # fmt: skip
 
+    def open_device(self, dev: Any) -> Any:
+        return dev
+
+    def close_device(self, dev_handle: Any) -> None:
+        """Nothing was opened."""
+
+    def reset_device(self, dev_handle: Any) -> None:
+        if self.stuck:
+            raise usb.core.USBError("permission denied", errno=13)
+        self.reset.append(dev_handle)
+
 
 def test_devices_are_listed_by_place_with_their_classes() -> None:
     bus = Bus((0x1A86, 0x7523, 1, (1, 4), 0xFF, 1), (0x04A9, 0x1909, 1, (1, 2), 6, 1))
@@ -70,3 +84,18 @@ def test_without_libusb_the_inventory_is_empty_and_says_why(monkeypatch: pytest.
     inventory = door.inventory()
     assert inventory.devices == ()
     assert "install libusb-1.0-0" in inventory.why_empty
+
+
+def test_only_the_device_at_the_place_is_reset() -> None:
+    bus = Bus((0x1A86, 0x7523, 1, (1, 4), 0xFF, 1), (0x1A86, 0x7523, 1, (1, 2), 0xFF, 1))
+    door.reset("1-1.2", backend=bus)
+    assert [device[3] for device in bus.reset] == [(1, 2)]
+
+
+def test_a_device_that_is_not_there_or_may_not_be_reset_is_named() -> None:
+    bus = Bus((0x1A86, 0x7523, 1, (1, 4), 0xFF, 1))
+    with pytest.raises(NoMachine, match=r"nothing is plugged in at USB 1-1\.2"):
+        door.reset("1-1.2", backend=bus)
+    bus.stuck = True
+    with pytest.raises(NoMachine, match=r"USB 1-1\.4 cannot be reset .*permission denied.*: unplug it"):
+        door.reset("1-1.4", backend=bus)
