@@ -15,6 +15,7 @@ from daemon.errors import LinedrawError
 from daemon.status import JOB_LOG_NAME
 
 _LINE = re.compile(r"(?P<time>\S+) \w+ \S+ (?P<words>.*?) state=(?P<state>\w+)")
+_FIGURES = ("strokes", "drawn_mm", "travelled_mm", "estimated_s", "real_s")
 _NAME = re.compile(r' name=("(?:[^"\\]|\\.)*"|\S+)')
 
 
@@ -32,9 +33,10 @@ def add_parser(subparsers: Any) -> None:
         "jobs",
         help="what it has done",
         description="Every job: its id, its state, since when, the name of its picture, and what was said of it.",
-        epilog="example:\n  linedrawd jobs | grep -w failed",
+        epilog="example:\n  linedrawd jobs | grep -w failed\n  linedrawd jobs --json | jq '.[].name'",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.add_argument("--json", action="store_true", help="as one JSON list, with the figures of each report")
     add_places(parser)
     parser.set_defaults(run=jobs)
 
@@ -59,14 +61,18 @@ def status(args: argparse.Namespace) -> int:
 
 def jobs(args: argparse.Namespace) -> int:
     root = settings_of(args).paths.jobs
-    for folder in sorted(os.listdir(root)) if root.is_dir() else []:
-        for line in _job(root / folder):
-            print(line)
+    found = (job for folder in (sorted(os.listdir(root)) if root.is_dir() else []) for job in _job(root / folder))
+    if args.json:
+        print(json.dumps([job | _figures(root / job["id"]) for job in found], indent=1, ensure_ascii=False))
+        return 0
+    for job in found:
+        name = job["name"] if set(job["name"]).isdisjoint(' "=\\') else json.dumps(job["name"], ensure_ascii=False)
+        print(f"{job['id']:32} {job['state']:12} {job['changed']}  {name}  {job['words']}")
     return 0
 
 
-def _job(folder: Path) -> Iterator[str]:
-    """One line for a job, none for a folder that is no job or whose log cannot be read."""
+def _job(folder: Path) -> Iterator[dict[str, str]]:
+    """What its log tells of a job, nothing for a folder that is no job or whose log cannot be read."""
     try:
         log = (folder / JOB_LOG_NAME).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -74,6 +80,22 @@ def _job(folder: Path) -> Iterator[str]:
     steps = [found for found in map(_LINE.match, log) if found]
     if steps:
         named = _NAME.search(log[0])
-        name = named[1] if named else folder.name
+        name = json.loads(named[1]) if named and named[1].startswith('"') else named[1] if named else folder.name
         last = steps[-1]
-        yield f"{folder.name:32} {last['state']:12} {last['time']}  {name}  {last['words']}"
+        yield {
+            "id": folder.name,
+            "name": name,
+            "state": last["state"],
+            "changed": last["time"],
+            "words": last["words"],
+            "folder": str(folder),
+        }
+
+
+def _figures(folder: Path) -> dict[str, Any]:
+    """Those of the report that people ask for; none where it has not been planned."""
+    try:
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return {key: report[key] for key in _FIGURES if key in report}
