@@ -35,7 +35,7 @@ class Arrivals:
     """Takes pictures in. Every cut, at any moment, leaves each picture in the inbox or in a job that is found again."""
 
     def __init__(self, desk: Desk, settings: Settings, *, free: Callable[[Path], int] = free_bytes) -> None:
-        self._desk, self._settings, self._free = desk, settings, free
+        self._desk, self.settings, self._free = desk, settings, free
         self._jobs_of: dict[int, list[str]] | None = None
         self._hashes: dict[str, str] = {}
 
@@ -47,7 +47,7 @@ class Arrivals:
         self._check_room()
         name = readable(picture.name)
         said, wishes = self._wishes(beside)
-        twin = self._twin(picture, said) if self._settings.intake.duplicates == "skip" else ""
+        twin = self._twin(picture, said) if self.settings.intake.duplicates == "skip" else ""
         copies = 1 if twin else wishes.copies
         files = {ARRIVAL_NAME: _arrival(name, beside.name if beside else "", copies)}
         if beside:
@@ -71,7 +71,7 @@ class Arrivals:
                 self._add(made, arrival["name"], arrival["copies"], beside, recorded=recorded)
 
     def _check_room(self) -> None:
-        floor_mb, root = self._settings.keep.free_mb, self._desk.folders.root
+        floor_mb, root = self.settings.keep.free_mb, self._desk.folders.root
         free_mb = self._free(root) / 1e6
         if free_mb < floor_mb:
             raise DiskTrouble(
@@ -90,7 +90,7 @@ class Arrivals:
         except OSError as error:
             raise SettingsError(f"{place} cannot be read ({error.strerror}): put a file there that can") from None
         wishes = parse(said, place)
-        with_wishes(self._settings, wishes, place)
+        with_wishes(self.settings, wishes, place)
         return said, wishes
 
     def _add(
@@ -108,7 +108,7 @@ class Arrivals:
             files = {ARRIVAL_NAME: _arrival(name, "", 1, of=job)}
             if (folder / SIDE_NAME).exists():
                 files[SIDE_NAME] = (folder / SIDE_NAME).read_bytes()
-            made.append(folders.copy(source, files))
+            made.append(folders.copy(source, files, name=name))
         if beside is not None:
             _remove_taken(beside, folder / SIDE_NAME)
         # Not before all of them have their folders: what is recorded is not looked at again after a cut.

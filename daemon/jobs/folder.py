@@ -89,9 +89,12 @@ class JobFolders:
             sync_folder(picture.parent)
         return folder.name
 
-    def copy(self, picture: Path, beside: Mapping[str, bytes] | None = None) -> str:
-        """As `take`, but the picture stays where it is. Raises DiskTrouble and FileNotFoundError."""
-        with self._new_folder(picture, beside or {}) as folder:
+    def copy(self, picture: Path, beside: Mapping[str, bytes] | None = None, *, name: str = "") -> str:
+        """As `take`, but the picture stays where it is. Raises DiskTrouble and FileNotFoundError.
+
+        name: what the picture is called, if not like its file.
+        """
+        with self._new_folder(Path(name) if name else picture, beside or {}) as folder:
             _copy_durably(picture, folder / _source_name(picture))
         return folder.name
 

@@ -57,7 +57,10 @@ def test_a_side_file_asks_for_copies_and_goes_into_the_folder_of_each(tmp_path: 
     drop(intake.inbox, "Häuschen.toml", WISHES)
     intake.take("Häuschen.png", "Häuschen.toml")
     jobs = intake.journal.jobs()
-    assert [job.name for job in jobs] == ["Häuschen.png"] * 2
+    assert [(job.id, job.name) for job in jobs] == [
+        ("000001-hauschen", "Häuschen.png"),
+        ("000002-hauschen", "Häuschen.png"),
+    ]
     assert [(intake.folders.path(job.id) / SIDE_NAME).read_bytes() for job in jobs] == [WISHES] * 2
     assert list(intake.inbox.iterdir()) == []
 
