@@ -5,42 +5,50 @@ from __future__ import annotations
 import fcntl
 import os
 import signal
+import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from daemon import __version__
 from daemon.config import Settings
-from daemon.control import MACHINE_ORDERS, ControlServer, Order
+from daemon.config.reread import reread
+from daemon.control import MACHINE_ORDERS, ControlServer, Order, give_order
 from daemon.errors import SettingsError
 from daemon.intake.inbox import Inbox
 from daemon.intake.rank import Rank, rank
-from daemon.intake.watch import InboxWatch
+from daemon.intake.watch import RESCAN_S, InboxWatch
 from daemon.jobs.arrivals import Arrivals
+from daemon.jobs.beats import Beats
+from daemon.jobs.choices import Choices
 from daemon.jobs.desk import Desk
 from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
-from daemon.jobs.moves import PointMm
+from daemon.jobs.frame import places_of
 from daemon.jobs.open_journal import open_journal
-from daemon.jobs.orders import MachineOrder, Places, outline_mm, rectangle_mm
+from daemon.jobs.orders import MachineOrder
 from daemon.jobs.pen_life import PenLife
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.retention import Retention
 from daemon.jobs.runner import Runner
 from daemon.jobs.scanning import Scanning
-from daemon.jobs.sheet import box_origin_mm
+from daemon.jobs.sheet import homes
 from daemon.machine.recorder import Recorder
+from daemon.notify import Notifier
 from daemon.program.file import load_program
-from daemon.shapes import Program
+from daemon.pulse import Pulse
 from daemon.status import Diary, StatusBoard
+from daemon.supervision import Supervision
 
 LIFT_WITHIN_S = 25.0
 """How long an end waits for the pen to be lifted; systemd kills after 30 s."""
+INBOX_WITHIN_S = 300.0
+"""Of the loop of the inbox, beyond its own waiting: for a slow disk, and old jobs that are removed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +63,7 @@ class Parts:
     pen: PenLife
     board: StatusBoard
     diary: Diary
+    pulse: Pulse
 
 
 @contextmanager
@@ -93,40 +102,27 @@ def parts_of(
         pen = PenLife(paths.state_dir / "pen.json", life_m, say=diary.say, show=board.change)
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
         recorder = at_end.enter_context(closing(Recorder(record))) if record else None
+        pulse = Pulse()
+        beats = Beats(pulse)
         drawing = Drawing(
             desk,
-            opened=lambda hear, still: opened(settings.machines[name], hear, still, recorder),
+            opened=lambda hear, still: opened(
+                settings.machines[name], beats.hearing(hear), still, recorder, beats.turned
+            ),
             moves=moves_of(settings.machines[name]),
-            places=_places(settings, desk),
+            places=replace(places_of(pool, desk), homes=homes(settings.machines[name])),
             load=load_program,
-            measure=lambda folder: pool.measure(folder, name),
+            measure=lambda folder: beats.measuring(pool, folder, name),
             inked=pen.drew,
         )
         at_end.callback(drawing.close)
         planning = Planning(desk, pool, name)
-        yield Parts(desk, pool, planning, drawing, Runner(desk, pool, planning, drawing), pen, board, diary)
+        runner = Runner(desk, pool, planning, drawing, pulse)
+        yield Parts(desk, pool, planning, drawing, runner, pen, board, diary, pulse)
 
 
 def _rank_in(settings: Settings) -> Callable[[str], Rank]:
     return lambda name: rank(name, settings.intake.order)
-
-
-def _places(settings: Settings, desk: Desk) -> Places:
-    """A frame is that of the drawing, or of the box where no job has been planned."""
-    machine = settings.machines[settings.machine_name]
-    left, bottom = box_origin_mm(settings.sheet, machine)
-    width, height = settings.sheet.box_mm
-    box = rectangle_mm((left, bottom), (left + width, bottom + height))
-
-    def frame_mm(job: str) -> Sequence[PointMm]:
-        found = desk.find(job) if job else desk.next_to_draw()
-        return outline_mm(desk.folders.path(found.id)) if found else box
-
-    def next_program() -> Program:
-        found = desk.next_to_draw()
-        return load_program(desk.folders.path(found.id) / "program.gcode") if found else Program((), 0)
-
-    return Places(machine.park_mm, frame_mm, next_program)
 
 
 @contextmanager
@@ -152,9 +148,29 @@ class Service:
     A thread that dies takes the daemon with it, in order: half a daemon would look like one that works.
     """
 
-    def __init__(self, settings: Settings, parts: Parts) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        parts: Parts,
+        *,
+        notifier: Notifier | None = None,
+        reread: Callable[[], Settings] | None = None,
+    ) -> None:
+        """reread: the settings as they are written now; raises SettingsError."""
         paths = settings.paths
-        self._parts, self._ended, self._asked = parts, threading.Event(), False
+        self._parts, self._asked, self._settings = parts, False, settings
+        self._choices = Choices(parts.desk, placed=lambda: parts.drawing.placed)
+        self._settings_now = reread or (lambda: settings)
+        self._supervision = Supervision(
+            notifier or Notifier(),
+            parts.pulse,
+            say=parts.diary.say,
+            status=lambda: parts.board.now,
+            answers=lambda: give_order(paths.control, Order(order="ping")),
+            reread=self._reread,
+        )
+        parts.board.told = self._supervision.show
+        self._retention = Retention(parts.desk, settings.keep)
         intake = settings.intake
         self._arrivals = Arrivals(parts.desk, settings)
         inbox = Inbox(
@@ -170,7 +186,7 @@ class Service:
             paths.inbox,
             trouble=parts.desk.trouble,
             poll_s=intake.poll_s if intake.watch == "poll" else None,
-            tidy=Retention(parts.desk, settings.keep).turn,
+            tidy=self._look_at_the_inbox,
         )
         self._scanning = Scanning(settings, say=parts.diary.say, trouble=parts.desk.trouble)
         self._control = ControlServer(paths.control, self._obey)
@@ -190,7 +206,7 @@ class Service:
         threads = [threading.Thread(target=self._work, args=(work,), name=work.__qualname__) for work in works]
         for thread in threads:
             thread.start()
-        self._ended.wait()
+        self._supervision.run()
         self._end(threads)
         return self._asked
 
@@ -198,17 +214,34 @@ class Service:
         try:
             work()
         finally:
-            self._ended.set()
+            self._supervision.end()
+
+    def _look_at_the_inbox(self) -> None:
+        """Called at each look: the first one comes when everything that happens from now on is heard."""
+        waits_s = max(RESCAN_S, self._settings.intake.poll_s)
+        self._parts.pulse.inbox.within(INBOX_WITHIN_S + waits_s)
+        self._supervision.watching()
+        self._retention.turn()
+
+    def _reread(self) -> list[str]:
+        """A sentence for each setting that has changed. Raises SettingsError."""
+        self._settings, words = reread(self._settings, self._settings_now())
+        self._parts.pool.settings = self._arrivals.settings = self._settings
+        self._retention.keep = self._settings.keep
+        return words or ["the settings have been read again: nothing has changed"]
 
     def end(self) -> None:
         """May be called from any thread and from a signal handler."""
         self._asked = True
-        self._ended.set()
+        self._supervision.end()
 
     def end_on_signals(self) -> None:
-        """SIGTERM and Ctrl-C: feed hold, pen up, end."""
+        """SIGTERM and Ctrl-C: feed hold, pen up, end. SIGHUP: read the settings again."""
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: self.end())
+        # A terminal that was closed says the same as somebody who wants the settings read again.
+        hang_up = self.end if sys.stdin.isatty() else self._supervision.reread
+        signal.signal(signal.SIGHUP, lambda *_: hang_up())
 
     def _end(self, threads: list[threading.Thread]) -> None:
         parts = self._parts
@@ -226,7 +259,8 @@ class Service:
 
     def _obey(self, order: Order) -> str:
         runner = self._parts.runner
-        self._parts.diary.say("a person says", order=order.order, what=order.job or "-")
+        if order.order != "ping":
+            self._parts.diary.say("a person says", order=order.order, what=order.job or "-")
         obeyed: dict[str, Callable[[], str]] = {
             "ping": lambda: "linedrawd runs",
             "scan": self._scanning.scan,
@@ -235,11 +269,19 @@ class Service:
             "go": runner.go,
             "cancel": lambda: runner.cancel(order.job),
             "pause": lambda: runner.pause(at_once=order.at_once),
-            "resume": runner.resume,
+            "resume": lambda: self._resume(order),
+            "drain": self._choices.drain,
+            "retry": lambda: self._choices.retry(order.job),
+            "again": lambda: self._choices.again(order.job),
         }
         if order.order in obeyed:
             return obeyed[order.order]()
         return runner.move(machine_order(order))
+
+    def _resume(self, order: Order) -> str:
+        if order.from_stroke is None:
+            return self._parts.runner.resume()
+        return self._choices.resume_from(order.job, order.from_stroke)
 
 
 def machine_order(order: Order) -> MachineOrder:

@@ -61,6 +61,8 @@ class StatusBoard:
         self._path, self._wall = path, wall
         self._lock, self._changed, self._stopped = threading.Lock(), threading.Event(), threading.Event()
         self._status, self._written, self._due_s = Status(pid=os.getpid()), Status(), float("-inf")
+        self.told: Callable[[Status], None] = lambda status: None
+        """Called with each status that has been written, in the thread that writes."""
 
     @property
     def now(self) -> Status:
@@ -81,6 +83,7 @@ class StatusBoard:
         if status != self._written:
             self._written, self._due_s = status, now + AT_MOST_EVERY_S
             self._write(status)
+            self.told(status)
         return max(0.0, self._due_s - now)
 
     def _write(self, status: Status) -> None:

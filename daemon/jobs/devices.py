@@ -57,12 +57,18 @@ def seconds_of(program: Program, machine: Machine) -> float:
         return 0.0
 
 
-def opened(machine: Machine, hear: Hear, still: bool, recorder: Recorder | None = None) -> OpenMachine:
+def opened(
+    machine: Machine,
+    hear: Hear,
+    still: bool,
+    recorder: Recorder | None = None,
+    turned: Callable[[], None] | None = None,
+) -> OpenMachine:
     """The machine, its port open and nothing said yet; `still`: nothing moves by itself, so it is not homed.
 
-    Raises NoMachine and SettingsError.
+    turned: see `Link`. Raises NoMachine and SettingsError.
     """
-    record = Record(recorder, {"machine": machine.model_dump(mode="json"), "still": still})
+    record = Record(recorder, {"machine": machine.model_dump(mode="json"), "still": still}, turned)
     return _device(machine).opened(machine, hear, still=still, record=record)
 
 

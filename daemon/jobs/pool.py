@@ -32,7 +32,9 @@ class Pool:
     """
 
     def __init__(self, settings: Settings, *, planner: str | None = None) -> None:
-        self._settings, self._planner = settings, planner or PLANNER
+        self._planner = planner or PLANNER
+        self.settings = settings
+        """What is asked from now on; the limits of a worker are those of its start."""
         self._lock = threading.Lock()
         self._worker: _Worker | None = None
         self._closed = False
@@ -64,12 +66,12 @@ class Pool:
             self._drop()
 
     def _ask(self, request: dict[str, Any], progress: Callable[[str], None]) -> None:
-        request["settings"] = self._settings.model_dump(mode="json")
+        request["settings"] = self.settings.model_dump(mode="json")
         with self._lock:
             answer = self._answer(request, progress)
             if answer.get("words") == "out of memory":
                 self._drop()
-                limit_mb = self._settings.planning.memory_mb
+                limit_mb = self.settings.planning.memory_mb
                 raise PlanningFailed(
                     f"planning needs more than {limit_mb} MB: scale the picture down or raise memory_mb"
                 )
@@ -79,7 +81,7 @@ class Pool:
     def _answer(self, request: dict[str, Any], progress: Callable[[str], None]) -> dict[str, Any]:
         answer: dict[str, Any] | None = None
         try:
-            answer = self._started().ask(request, self._settings.planning.time_limit_s, progress)
+            answer = self._started().ask(request, self.settings.planning.time_limit_s, progress)
         finally:
             # Whatever was thrown: what a worker says from here on would answer another question.
             if answer is None:
@@ -91,7 +93,7 @@ class Pool:
             raise PlanningFailed("the daemon is ending: start it again")
         if self._worker is None or not self._worker.alive:
             self._drop()
-            self._worker = _Worker(self._planner, self._settings)
+            self._worker = _Worker(self._planner, self.settings)
         return self._worker
 
     def _drop(self) -> None:

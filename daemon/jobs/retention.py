@@ -30,7 +30,7 @@ class Retention:
         wall: Callable[[], float] = time.time,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._desk, self._keep, self._wall, self._now = desk, keep, wall, now
+        self._desk, self.keep, self._wall, self._now = desk, keep, wall, now
         self._sizes: dict[str, int] = {}
         self._due_s = float("-inf")
 
@@ -59,8 +59,8 @@ class Retention:
         left = sum(self._size(job.id) for job in self._desk.journal.jobs())
         going: list[Job] = []
         for job in over:
-            too_old = self._wall() - job.changed_s > self._keep.jobs_days * DAY_S
-            if not too_old and left <= self._keep.jobs_mb * 1e6:
+            too_old = self._wall() - job.changed_s > self.keep.jobs_days * DAY_S
+            if not too_old and left <= self.keep.jobs_mb * 1e6:
                 break
             left -= self._size(job.id)
             going.append(job)

@@ -14,6 +14,12 @@ from daemon.jobs.orders import MachineOrder
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
+from daemon.pulse import Heart, Pulse
+
+DRAWING_WITHIN_S = 90.0
+"""Of the drawing loop: the longest wait after a fault, and a look at every port. Its link beats more often."""
+PLANNING_WITHIN_S = 150.0
+"""Of the planning loop, beyond the time limit of a picture."""
 
 
 class Runner:
@@ -22,15 +28,19 @@ class Runner:
     The orders return a sentence for the person who gave them.
     """
 
-    def __init__(self, desk: Desk, pool: Pool, planning: Planning, drawing: Drawing) -> None:
+    def __init__(
+        self, desk: Desk, pool: Pool, planning: Planning, drawing: Drawing, pulse: Pulse | None = None
+    ) -> None:
         self._desk, self._pool, self._planning, self._drawing = desk, pool, planning, drawing
+        self._pulse = pulse or Pulse()
 
     def plan_on(self) -> None:
-        self._turn_on(self._planning.turn)
+        heart, limit_s = self._pulse.planning, self._pool.settings.planning.time_limit_s
+        self._turn_on(self._planning.turn, heart, PLANNING_WITHIN_S + limit_s)
         self._pool.close()
 
     def draw_on(self) -> None:
-        self._turn_on(self._drawing.turn)
+        self._turn_on(self._drawing.turn, self._pulse.drawing, DRAWING_WITHIN_S)
         self._drawing.end()
 
     def take(self, picture: Path, name: str) -> None:
@@ -79,8 +89,9 @@ class Runner:
         self._drawing.stop()
         self._pool.close()
 
-    def _turn_on(self, turn: Callable[[], float]) -> None:
+    def _turn_on(self, turn: Callable[[], float], heart: Heart, within_s: float) -> None:
         while not self._desk.ending:
+            heart.within(within_s)
             seen = self._desk.changes
             try:
                 self._desk.wait(turn(), since=seen)

@@ -17,6 +17,7 @@ from firmware_protocol.session import Ended, Event, JobLine, NotReady, PausableS
 
 LIFT_WITHIN_S = 30.0
 """For an interrupted job to slow down and lift its pen."""
+TURN_S = 5.0
 
 
 Promise: TypeAlias = Callable[[int, int], int]
@@ -41,7 +42,7 @@ class Link:
     from others.
 
     heard: is given every event, in order, in the calling thread; it must not call back.
-    recorder: writes everything down.
+    recorder: writes everything down. turned: called at each turn of the loop, at least every TURN_S.
     A link whose job ended by a fault is over: close it and make a new one.
     """
 
@@ -52,11 +53,13 @@ class Link:
         *,
         heard: Callable[[Event], None],
         recorder: Recorder | None = None,
+        turned: Callable[[], None] | None = None,
     ) -> None:
         self._transport = transport
         self._session = session
         self._heard = heard
         self._recorder = recorder
+        self._turned = turned
         self._stop_asked = threading.Event()
         self._woken = threading.Event()
         self._wishes: deque[tuple[Literal["pause", "resume"], bool | None]] = deque()
@@ -201,6 +204,8 @@ class Link:
         data = self._transport.read(self._transport.now())
         while True:
             yield None
+            if self._turned:
+                self._turned()
             now = self._transport.now()
             events = [*self._session.receive(data, now), *self._session.expire(now)]
             self._promise_strokes(now)
@@ -243,5 +248,6 @@ class Link:
         return None
 
     def _wait_until(self, until: float | None) -> float | None:
-        times = [at for at in (until, self._session.deadline()) if at is not None]
+        next_turn = self._transport.now() + TURN_S if self._turned else None
+        times = [at for at in (until, self._session.deadline(), next_turn) if at is not None]
         return min(times, default=None)

@@ -53,10 +53,12 @@ class Conversation(Generic[S]):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Where everything is written down (None: nowhere), and the settings that stand at its beginning."""
+    """Where everything is written down (None: nowhere), the settings that stand at its beginning, and who is told of
+    each turn of the loop (None: nobody)."""
 
     recorder: Recorder | None = None
     settings: dict[str, Any] = field(default_factory=dict)
+    turned: Callable[[], None] | None = None
 
 
 NO_RECORD = Record()
@@ -79,7 +81,7 @@ class OpenedMachine(Generic[S]):
         self._heard = heard
         if record.recorder:
             record.recorder.opened(now, record.settings)
-        self._link = Link(transport, self.session, heard=self._hear, recorder=record.recorder)
+        self._link = Link(transport, self.session, heard=self._hear, recorder=record.recorder, turned=record.turned)
         self._polylines_taken = 0
         self._corner_mm: PlaceMm = (0.0, 0.0)
         self._position_mm: Vector | None = None

@@ -11,6 +11,7 @@ import pytest
 from daemon.errors import MachineFault, NoMachine
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
+from daemon.pulse import Heart
 from firmware_protocol.session import Verdict
 from tests.daemon.jobs.bench import Bench, fault
 from tests.daemon.jobs.test_journal import full_disk
@@ -195,7 +196,7 @@ def test_a_mistake_of_ours_holds_everything(bench: Bench) -> None:
         bench.desk.ending = True
         raise KeyError("a mistake")
 
-    bench.runner._turn_on(mistake)
+    bench.runner._turn_on(mistake, Heart("drawing"), 1.0)
     assert "a mistake in linedrawd (KeyError('a mistake'))" in bench.desk.held
     assert bench.shown["last_error"] == bench.desk.held
     assert bench.machine.stops == 0
