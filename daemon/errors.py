@@ -53,6 +53,10 @@ class MachineFault(LinedrawError):
     exit_code = 4
 
 
+class Unplugged(MachineFault):
+    """The way to the machine has gone: its cable, its adapter or its network. It may come back at any moment."""
+
+
 def unknown(where: str, key: str, known: Sequence[str]) -> str:
     """The sentence about a key that is not known at this place: the one that was meant, or all there are."""
     near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)

@@ -18,14 +18,10 @@ from daemon.jobs.open_machine import InkMm, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
 from daemon.jobs.progress import Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
+from daemon.jobs.retry import IDLE_S, retry_after_s
 from daemon.jobs.states import State
 from daemon.shapes import Program
 from firmware_protocol.session import Accepted, Ended, Event, Verdict
-
-IDLE_S = 1.0
-NO_MACHINE_RETRY_S = 3.0
-FAULT_RETRY_S = 30.0
-"""Opening a port resets many controllers: one that answers, but is not ready, is left alone longer."""
 
 _ENDED = "linedrawd ended in the middle of a drawing: set the pen to its origin and put in a new sheet"
 """The next one opens the port anew, which makes an origin of wherever the pen stands."""
@@ -170,7 +166,7 @@ class Drawing:
     def _lost(self, error: NoMachine | MachineFault) -> None:
         self._give_back()
         self.missing = error
-        self._retry_at_s = self._now() + (NO_MACHINE_RETRY_S if isinstance(error, NoMachine) else FAULT_RETRY_S)
+        self._retry_at_s = self._now() + retry_after_s(error)
         if str(error) != self._told:
             self._told = str(error)
             self._desk.trouble(self._told)

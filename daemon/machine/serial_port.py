@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 import serial
 from serial.tools import list_ports
 
-from daemon.errors import MachineFault, NoMachine
+from daemon.errors import MachineFault, NoMachine, Unplugged
 from daemon.machine.transport import Transport
 
 CHUNK_BYTES = 4096
@@ -197,8 +197,8 @@ class _Port:
         except OSError as fault:
             raise self._gone() from fault
 
-    def _gone(self) -> MachineFault:
-        return MachineFault(f"{self._name} has been unplugged: plug the machine in again")
+    def _gone(self) -> Unplugged:
+        return Unplugged(f"{self._name} has been unplugged: plug the machine in again")
 
     def _require_open(self) -> None:
         if self._wire is None:

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from urllib.parse import parse_qsl, urlsplit
 
-from daemon.errors import MachineFault, SettingsError
+from daemon.errors import MachineFault, SettingsError, Unplugged
 from firmware_protocol.grbl.simulator.faults import (
     BrownOut,
     DropByte,
@@ -94,7 +94,7 @@ class SimulatedTransport:
         if self._closed:
             raise MachineFault(f"{self._name} has been closed: open it again")
         if self.simulator.unplugged:
-            raise MachineFault(f"{self._name} has been unplugged: plug the machine in again")
+            raise Unplugged(f"{self._name} has been unplugged: plug the machine in again")
 
 
 def open_simulated(

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from daemon.config import GrblMachine
-from daemon.errors import MachineFault
+from daemon.errors import MachineFault, Unplugged
 from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders
@@ -37,6 +37,7 @@ class InstantMachine:
     endings: list[Ended] = field(default_factory=list)
     drawn: int = 0
     unplugged: bool = False
+    gone: type[MachineFault] = Unplugged
     missing: Exception | None = None
     opened: int = 0
     closed: int = 0
@@ -78,7 +79,7 @@ class InstantMachine:
 
     def listen(self) -> None:
         if self.unplugged:
-            raise MachineFault("instant was unplugged: plug it in")
+            raise self.gone("instant was unplugged: plug it in")
 
     def line_times_s(self, program: Program) -> Sequence[float]:
         return [float(line + 1) for line in range(len(program.lines))]

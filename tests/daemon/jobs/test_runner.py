@@ -11,6 +11,7 @@ import pytest
 from daemon.errors import MachineFault, NoMachine
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
+from daemon.machine.open import LISTEN_S
 from daemon.pulse import Heart
 from firmware_protocol.session import Verdict
 from tests.daemon.jobs.bench import Bench, fault
@@ -113,10 +114,30 @@ def test_a_machine_that_is_unplugged_in_idle_is_opened_again(bench: Bench) -> No
     bench.drawing.turn()
     assert bench.machine.closed == 1
     bench.machine.unplugged = False
-    bench.now_s += 30.0
+    bench.now_s += 3.0
     bench.planned()
     bench.drawing.turn()
     assert bench.states() == ["done"]
+
+
+def test_a_machine_that_failed_in_idle_is_left_alone_longer_than_one_that_was_unplugged(bench: Bench) -> None:
+    bench.drawing.turn()
+    bench.machine.unplugged, bench.machine.gone = True, MachineFault
+    bench.drawing.turn()
+    bench.machine.unplugged = False
+    bench.planned()
+    bench.now_s += 29.0
+    bench.drawing.turn()
+    assert bench.machine.opened == 1
+    bench.now_s += 1.0
+    bench.drawing.turn()
+    bench.drawing.turn()
+    assert bench.states() == ["done"]
+
+
+def test_an_idle_machine_is_looked_at_more_often_than_once_a_second(bench: Bench) -> None:
+    bench.drawing.turn()
+    assert bench.drawing.turn() + LISTEN_S <= 1.0
 
 
 def test_a_fault_that_the_link_raises_interrupts_too(bench: Bench) -> None:
