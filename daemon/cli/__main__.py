@@ -19,6 +19,7 @@ EXAMPLES = """examples:
   linedrawd next                           # a new sheet is in
   linedrawd machine check                  # who answers, and what a drawing would want otherwise
   linedrawd status                         # what it does now
+  linedrawd watch                          # the same, live, with the drawing so far
 
 exit codes: 0 done, 1 some pictures failed, 2 usage or settings, 3 no machine (draw), 4 machine fault
 """
@@ -53,7 +54,20 @@ def _event_parser() -> argparse.ArgumentParser:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from daemon.cli import control, draw, machine, models, plan, replay, scan, serve, simulate, status, usb  # noqa: PLC0415
+    from daemon.cli import (  # noqa: PLC0415
+        control,
+        draw,
+        machine,
+        models,
+        plan,
+        replay,
+        scan,
+        serve,
+        simulate,
+        status,
+        usb,
+        watch,
+    )
     from daemon.cli.options import add_machine, add_places, add_record  # noqa: PLC0415
     from daemon.cli.scan import add_scanner  # noqa: PLC0415
 
@@ -70,7 +84,7 @@ def _parser() -> argparse.ArgumentParser:
     add_record(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, scan, control, machine, status, usb, models, simulate, replay):
+    for group in (plan, draw, scan, control, machine, status, usb, watch, models, simulate, replay):
         group.add_parser(subparsers)
     return parser
 

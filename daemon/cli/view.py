@@ -36,7 +36,8 @@ def view(
     wall_s: seconds since 1970. runs: whether the daemon does.
     """
     head = [_machine(said, size, runs=runs), *_job(said, size, wall_s)]
-    foot = [_styled(_queue(said), "", size), *(_message(line, size) for line in messages[-MESSAGES:])]
+    worn = [_styled(str(said["pen"]), RED, size)] if said.get("pen") else []
+    foot = [*worn, _styled(_queue(said), "", size), *(_message(line, size) for line in messages[-MESSAGES:])]
     room = size.rows - len(head) - len(foot) - 2
     done = int(said.get("strokes_done") or 0)
     picture = braille(lines, done, columns=size.columns, rows=room, colour=size.colour) if said.get("job") else []
@@ -111,8 +112,6 @@ def _queue(said: dict[str, Any]) -> str:
         parts.append(f"planning {said['planning']} ({said.get('stage') or 'begins'})")
     if said.get("ink_m"):
         parts.append(f"the pen has drawn {said['ink_m']:g} m")
-    if said.get("pen"):
-        parts.append(str(said["pen"]))
     return "   ".join(parts)
 
 

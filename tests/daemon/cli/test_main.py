@@ -45,6 +45,19 @@ def test_a_picture_is_drawn_now(home: Path, capsys: pytest.CaptureFixture[str]) 
     assert (home / "state" / "jobs" / "000001-house" / "ink.json").exists()
 
 
+def test_jobs_are_told_as_json(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["draw", picture(home, name='my "house" é.png'), "--device", "sim", *state(home)])
+    main(["draw", picture(home, "bad", "bad.png"), "--device", "sim", *state(home)])
+    capsys.readouterr()
+    assert main(["jobs", "--json", *state(home)]) == 0
+    drawn, failed = json.loads(capsys.readouterr().out)
+    assert (drawn["id"], drawn["state"], drawn["strokes"]) == ("000001-my-house-e", "done", 2)
+    assert drawn["name"].endswith('my "house" é.png')
+    assert drawn["words"].startswith("all 2 strokes are drawn")
+    assert drawn["real_s"] > 0
+    assert (failed["state"], "strokes" in failed) == ("failed", False)
+
+
 def test_jobs_lists_what_was_done_without_a_daemon(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["draw", picture(home, name='my "house" é.png'), "--device", "sim", *state(home)])
     main(["draw", picture(home, "bad", "bad.png"), "--device", "sim", *state(home)])
