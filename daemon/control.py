@@ -32,13 +32,23 @@ MACHINE_ORDERS: tuple[MachineOrderName, ...] = get_args(MachineOrderName)
 """These are obeyed by the machine itself, between two drawings."""
 
 
+PersonOrderName: TypeAlias = Literal[
+    "ping", "scan", "next", "stop", "go", "drain", "cancel", "retry", "again", "pause", "resume"
+]
+
+
 class Order(BaseModel):
-    """What a person wants. job: of cancel and frame. at_once: of pause. x_mm, y_mm: of jog. seconds: of pen down."""
+    """What a person wants.
+
+    job: of cancel, retry, again and frame, and of a resume `from_stroke`. at_once: of pause. x_mm, y_mm: of jog.
+    seconds: of pen down.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    order: Literal["ping", "scan", "next", "stop", "go", "cancel", "pause", "resume"] | MachineOrderName
+    order: PersonOrderName | MachineOrderName
     job: str = Field(default="", max_length=200)
+    from_stroke: int | None = Field(default=None, ge=0, le=10**7)
     at_once: bool = False
     x_mm: float = Field(default=0.0, ge=-10000, le=10000)
     y_mm: float = Field(default=0.0, ge=-10000, le=10000)

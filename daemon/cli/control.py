@@ -1,4 +1,4 @@
-"""`linedrawd next`, `stop`, `go`, `pause`, `resume`, `cancel`: orders to the running daemon."""
+"""`next`, `stop`, `go`, `drain`, `pause`, `resume`, `cancel`, `retry`, `again`: orders to the running daemon."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import Any, Literal
 
 from daemon.cli.options import add_places, settings_of
 from daemon.control import Order, give_order
+from daemon.errors import SettingsError
 
-_ORDERS: dict[Literal["next", "stop", "go", "resume"], tuple[str, str]] = {
+_ORDERS: dict[Literal["next", "stop", "go", "drain"], tuple[str, str]] = {
     "next": (
         "a new sheet is in: draw the next picture",
         "linedrawd next             # or put a file NEXT into the inbox",
@@ -17,13 +18,31 @@ _ORDERS: dict[Literal["next", "stop", "go", "resume"], tuple[str, str]] = {
         "stop the machine now, pen up; no further job starts until `go`",
         "linedrawd stop             # then `linedrawd jobs` says what is on the paper",
     ),
-    "resume": (
-        "go on after `pause`",
-        "linedrawd resume           # the pen goes to where the drawing was left",
+    "drain": (
+        "finish what is being drawn and begin nothing more until `go`",
+        "linedrawd drain            # before the machine is switched off",
     ),
     "go": (
         "jobs may start again, after `stop` or a fault of the machine",
         "linedrawd go               # when the machine, the pen and the sheet are in order",
+    ),
+}
+
+_OF_A_JOB: dict[Literal["cancel", "retry", "again"], tuple[str, str, str]] = {
+    "cancel": (
+        "drop a job",
+        "Drop a job. One that is being drawn is stopped, pen up.",
+        "linedrawd cancel 12        # the job that `linedrawd jobs` lists as 000012-...",
+    ),
+    "retry": (
+        "try a failed job again",
+        "Try a job again that failed before any ink came onto a sheet.",
+        "linedrawd retry 12         # after the settings were mended",
+    ),
+    "again": (
+        "draw a job once more",
+        "Draw the picture of a job once more, as a new job, whatever became of the old one.",
+        "linedrawd again 12         # put a new sheet in first",
     ),
 }
 
@@ -50,15 +69,29 @@ def add_parser(subparsers: Any) -> None:
     add_places(parser)
     parser.set_defaults(run=run, order=None)
     parser = subparsers.add_parser(
-        "cancel",
-        help="drop a job",
-        description="Drop a job. One that is being drawn is stopped, pen up.",
-        epilog="example:\n  linedrawd cancel 12        # the job that `linedrawd jobs` lists as 000012-...",
+        "resume",
+        help="go on after `pause`, or with an interrupted job from a stroke on",
+        description="Go on after `pause`; or, with JOB and --from-stroke, go on with a job that was interrupted.",
+        epilog="examples:\n"
+        "  linedrawd resume                       # the pen goes to where the drawing was left\n"
+        "  linedrawd resume 12 --from-stroke 40   # look at the sheet first: stroke 40 and all behind it are drawn",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("job", metavar="JOB", help="its id, or the number at its beginning")
+    parser.add_argument("job", metavar="JOB", nargs="?", default="", help="its id, or the number at its beginning")
+    parser.add_argument("--from-stroke", type=int, metavar="K", help="the first stroke to be drawn, from 0")
     add_places(parser)
     parser.set_defaults(run=run, order=None)
+    for name, (words, description, example) in _OF_A_JOB.items():
+        parser = subparsers.add_parser(
+            name,
+            help=words,
+            description=description,
+            epilog=f"example:\n  {example}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        parser.add_argument("job", metavar="JOB", help="its id, or the number at its beginning")
+        add_places(parser)
+        parser.set_defaults(run=run, order=None, of_a_job=name)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -71,4 +104,10 @@ def run(args: argparse.Namespace) -> int:
 def _order(args: argparse.Namespace) -> Order:
     if hasattr(args, "at_once"):
         return Order(order="pause", at_once=args.at_once)
-    return Order(order="cancel", job=args.job)
+    if hasattr(args, "of_a_job"):
+        return Order(order=args.of_a_job, job=args.job)
+    if bool(args.job) != (args.from_stroke is not None):
+        raise SettingsError("JOB and --from-stroke belong together: give both, or none to end a pause")
+    if args.from_stroke is not None and args.from_stroke < 0:
+        raise SettingsError("strokes are counted from 0: give --from-stroke 0 or more")
+    return Order(order="resume", job=args.job, from_stroke=args.from_stroke)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
+from daemon.jobs.choices import NOT_PLACED, program_left
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import write_durably
 from daemon.jobs.journal import Job
@@ -57,10 +58,16 @@ class Drawing:
         self._desk, self._opened, self._load, self._measure, self._now = desk, opened, load, measure, now
         self._moves, self._places, self._asked, self._inked = moves, places, Asked(desk.wake), inked
         self._machine: OpenMachine | None = None
+        self._placed = False
         self._progress: Progress | None = None
         self.missing: NoMachine | MachineFault | None = None
         """Why there is no machine to draw with; None when there is one, and before the first look."""
         self._told, self._retry_at_s = "", float("-inf")
+
+    @property
+    def placed(self) -> bool:
+        """The machine knows where the sheet's origin is, or will when it has been opened."""
+        return self._places.homes or (self._machine is not None and self._placed)
 
     def turn(self) -> float:
         """Returns the seconds to wait for a change before the next turn."""
@@ -120,7 +127,7 @@ class Drawing:
             self._lost(error)
 
     def _open(self, *, still: bool) -> None:
-        self._machine = self._opened(self._hear, still)
+        self._machine, self._placed = self._opened(self._hear, still), False
         ready = self._machine.connect()
         self.missing, self._told = None, ""
         self._desk.say("the machine is ready", port=self._machine.name, firmware=ready.firmware)
@@ -138,6 +145,7 @@ class Drawing:
                 self._open(still=still)
             assert self._machine is not None
             words = obey(order, self._machine, self._moves, self._places)
+            self._placed = self._placed or order.name in ("origin", "home")
         except (NoMachine, MachineFault) as error:
             self._lost(error)
             raise
@@ -196,9 +204,13 @@ class Drawing:
         assert self._machine is not None
         folder = self._desk.folders.path(job.id)
         try:
-            program = self._load(folder / "program.gcode")
+            program = program_left(job, folder, self._load(folder / "program.gcode"))
         except LinedrawError as error:
             self._desk.step_at_last(job.id, State.FAILED, str(error))
+            return
+        if job.possible and not self.placed:
+            self._desk.hold(NOT_PLACED)
+            self._desk.step_at_last(job.id, State.INTERRUPTED, NOT_PLACED)
             return
         times_s = self._machine.line_times_s(program)
         self._progress = Progress(self._desk.show, program, times_s, now=self._machine.now)
@@ -208,6 +220,7 @@ class Drawing:
         ended = self._ended(job, program, Ahead(self._promises(job, program), program, times_s))
         self._progress = None
         self._asked.accept()
+        self._placed = ended.position_known and (self._placed or ended.strokes_possible > job.possible)
         self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
         self._desk.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
 
@@ -220,11 +233,12 @@ class Drawing:
     def _ended(self, job: Job, program: Program, promise: Ahead) -> Ended:
         assert self._machine is not None
         if self._desk.held or self._desk.ending or self._desk.is_cancelled(job.id):
-            return Ended(Verdict.STOPPED, 0, 0, True, True, "a person stopped it before it began")
+            why = "a person stopped it before it began"
+            return Ended(Verdict.STOPPED, job.certain, job.possible, True, True, why)
         try:
             return self._machine.draw(program, promise)
         except MachineFault as error:
-            return Ended(Verdict.UNPLUGGED, 0, program.strokes, False, False, str(error))
+            return Ended(Verdict.UNPLUGGED, job.certain, program.strokes, False, False, str(error))
 
     def _record(self, job: Job, program: Program, ended: Ended, *, real_s: float) -> None:
         assert self._machine is not None

@@ -36,12 +36,13 @@ class MachineOrder:
 @dataclass(frozen=True, slots=True)
 class Places:
     """Where the orders lead: the park position, the corners of a job's drawing ("": of the next one), and the program
-    that comes next (one without lines where none does).
+    that comes next (one without lines where none does). homes: the machine knows its origin whenever it is opened.
     """
 
     park_mm: PointMm
     frame_mm: Callable[[str], Sequence[PointMm]]
     next_program: Callable[[], Program]
+    homes: bool = False
 
 
 def obey(order: MachineOrder, machine: OpenMachine, moves: Moves, places: Places) -> str:

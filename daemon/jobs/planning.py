@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from daemon.errors import BadPicture, LinedrawError
+from daemon.errors import BadPicture, LinedrawError, PlanningFailed
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import source_of
 from daemon.jobs.journal import Job
 from daemon.jobs.pool import Pool
+from daemon.jobs.states import State
 
 IDLE_S = 60.0
 
@@ -16,6 +17,7 @@ class Planning:
 
     def __init__(self, desk: Desk, pool: Pool, machine: str) -> None:
         self._desk, self._pool, self._machine = desk, pool, machine
+        self._tried: set[str] = set()
 
     def turn(self) -> float:
         """Returns the seconds to wait for a change before the next turn."""
@@ -26,13 +28,22 @@ class Planning:
             self._plan(job)
         except LinedrawError as error:
             # Broken off because the daemon ends: the next one plans it again.
-            if not self._desk.ending:
+            if not self._desk.ending and not self._again(job, error):
                 self._desk.end_planning(job.id, failed=str(error))
         else:
             self._desk.end_planning(job.id)
         finally:
             self._desk.show(planning="", stage="")
         return 0.0
+
+    def _again(self, job: Job, error: LinedrawError) -> bool:
+        """A worker that died may have died of something else than this picture; it is tried once more."""
+        dropped = self._desk.is_cancelled(job.id) or bool(self._desk.only)
+        if not isinstance(error, PlanningFailed) or job.id in self._tried or dropped:
+            return False
+        self._tried.add(job.id)
+        self._desk.step(job.id, State.QUEUED, f"{error}; it is tried once more")
+        return True
 
     def _plan(self, job: Job) -> None:
         folder = self._desk.folders.path(job.id)

@@ -39,3 +39,12 @@ def reach_low_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
         -width_mm if sheet.corner.endswith("right") else 0.0,
         -height_mm if sheet.corner.startswith("upper") else 0.0,
     )
+
+
+def homes(machine: Machine) -> bool:
+    """It knows where the sheet's origin is whenever its port has been opened: by switches, or by its control's G54."""
+    return (
+        isinstance(machine, EmcoMachine)
+        or (isinstance(machine, DobotMachine) and machine.home != "never")
+        or (isinstance(machine, GrblMachine) and machine.home != "never" and machine.origin == "homed")
+    )

@@ -1,0 +1,91 @@
+"""What only a person may choose: to try a job again, to draw it once more, to go on with it from a stroke, to drain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from daemon.errors import LinedrawError
+from daemon.jobs.desk import Desk
+from daemon.jobs.folder import source_of, write_durably
+from daemon.jobs.journal import UNTOLD, Job
+from daemon.jobs.states import State
+from daemon.jobs.wishes import SIDE_NAME
+from daemon.shapes import Program
+
+_FROM_NAME = "from_stroke"
+NOT_PLACED = (
+    "the machine does not know where the sheet's origin is: put the pen there and say `linedrawd machine origin`, or "
+    "`linedrawd machine home`, then `linedrawd resume JOB --from-stroke K` again"
+)
+_DRAINED = "a person said drain: nothing more is begun"
+
+
+class Choices:
+    """The orders return a sentence for the person who gave them. Calls come from any thread.
+
+    placed: whether the machine knows where the sheet's origin is. Each raises LinedrawError when it is refused, and
+    DiskTrouble, with nothing changed.
+    """
+
+    def __init__(self, desk: Desk, *, placed: Callable[[], bool]) -> None:
+        self._desk, self._placed = desk, placed
+
+    def retry(self, job_id: str) -> str:
+        """Plan and draw a failed job again, where no ink of it can be on a sheet."""
+        job = self._desk.find(job_id)
+        if job.state is not State.FAILED:
+            raise LinedrawError(f"job {job.id} is {job.state.value}, only a failed one is tried again: say `again`")
+        if job.possible:
+            raise LinedrawError(f"ink of job {job.id} may be on the sheet ({job.on_paper}): say `linedrawd again`")
+        self._desk.step(job.id, State.QUEUED, "a person has it tried again")
+        return f"job {job.id} is queued again"
+
+    def again(self, job_id: str) -> str:
+        """A new job of the same picture, with the same wishes, whatever became of the old one."""
+        job = self._desk.find(job_id)
+        folder = self._desk.folders.path(job.id)
+        source = source_of(folder)
+        if source is None:
+            raise LinedrawError(f"the picture of job {job.id} is no longer kept: drop it into the inbox again")
+        new = self._desk.folders.copy(source)
+        if (folder / SIDE_NAME).exists():
+            write_durably(self._desk.folders.path(new) / SIDE_NAME, (folder / SIDE_NAME).read_bytes())
+        return f"job {self._desk.add(new, job.name)} draws {job.name} once more"
+
+    def drain(self) -> str:
+        """What is being drawn is finished, and nothing more is begun."""
+        self._desk.hold(_DRAINED)
+        return "what is being drawn is finished, no further job starts until you say `linedrawd go`"
+
+    def resume_from(self, job_id: str, stroke: int) -> str:
+        """Go on with an interrupted job from this stroke (from 0) on; the person answers for those before it."""
+        job = self._desk.find(job_id)
+        if job.state is not State.INTERRUPTED:
+            raise LinedrawError(f"job {job.id} is {job.state.value}: only an interrupted one is resumed from a stroke")
+        if job.possible != UNTOLD and stroke >= job.strokes:
+            raise LinedrawError(
+                f"job {job.id} has {job.strokes} strokes, from 0 to {job.strokes - 1}: give one of them"
+            )
+        if not self._placed():
+            raise LinedrawError(NOT_PLACED)
+        write_durably(self._desk.folders.path(job.id) / _FROM_NAME, str(stroke).encode())
+        self._desk.step(job.id, State.WAITING, f"a person has it go on from stroke {stroke}")
+        self._desk.go()
+        return f"job {job.id} goes on from stroke {stroke}"
+
+
+def program_left(job: Job, folder: Path, program: Program) -> Program:
+    """What of the program is to be drawn: all, or from the stroke on that a person has named.
+
+    The lines before the first stroke, which lift the pen, stay; each stroke begins with the travel to its start.
+    Raises LinedrawError where ink may be on the sheet and no stroke has been named.
+    """
+    if not job.possible:
+        return program
+    try:
+        first = int((folder / _FROM_NAME).read_text(encoding="ascii"))
+    except (OSError, ValueError):
+        raise LinedrawError(f"nobody has said from which stroke job {job.id} goes on: say it again") from None
+    lines = tuple(line for line in program.lines if line.stroke is None or line.stroke >= first)
+    return Program(lines, program.strokes)
