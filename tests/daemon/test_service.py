@@ -228,3 +228,24 @@ def test_the_daemons_own_process_loads_no_network_no_vision_and_no_arrays() -> N
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout == "set()\n"
+
+
+def test_a_side_file_makes_copies_and_its_mistakes_are_told_until_they_are_mended(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path)) as daemon:
+        daemon.drop("house.toml", "copys = 2")
+        daemon.drop("house.png")
+        while "house.toml: copys is unknown: did you mean copies?" not in daemon.log():
+            daemon.parts.desk.wait(0.05)
+        assert daemon.parts.desk.journal.jobs() == []
+        daemon.drop("house.toml", "copies = 2")
+        jobs = daemon.wait_for(lambda jobs: len(jobs) == 2 and ended(jobs))
+    assert [(job.name, job.state) for job in jobs] == [("house.png", State.DONE)] * 2
+
+
+def test_a_file_says_that_a_new_pen_is_in(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path)) as daemon:
+        daemon.parts.pen.ink_m = 12.0
+        daemon.drop("PEN", "")
+        while daemon.parts.pen.ink_m:
+            daemon.parts.desk.wait(0.05)
+        assert "a new pen is in drawn_with_the_old_m=12" in daemon.log()

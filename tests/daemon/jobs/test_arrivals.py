@@ -6,12 +6,14 @@ import errno
 import os
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
 
 from daemon.config import Options, Settings, load_settings
 from daemon.errors import DiskTrouble, SettingsError
+from daemon.intake.rank import rank
 from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import JobFolders, source_of
@@ -33,7 +35,15 @@ class Intake:
         self.settings: Settings = load_settings(Options(config=file, state_dir=root), environment={"HOME": str(root)})
         self.journal = Journal(root / "journal.sqlite")
         self.folders = JobFolders(root / "jobs")
-        self.desk = Desk(self.journal, self.folders, say=_silent, show=_silent, asks_for_sheets=False)
+        order = self.settings.intake.order
+        self.desk = Desk(
+            self.journal,
+            self.folders,
+            say=_silent,
+            show=_silent,
+            asks_for_sheets=False,
+            rank=lambda name: rank(name, order),
+        )
         self.arrivals = Arrivals(self.desk, self.settings, free=free)
 
     def take(self, name: str = "house.png", side: str | None = "house.toml") -> None:
@@ -223,3 +233,33 @@ def test_below_the_floor_of_free_disk_no_picture_is_taken(tmp_path: Path) -> Non
         intake.take(side=None)
     assert (intake.inbox / "house.png").exists()
     assert list(intake.folders.root.iterdir()) == []
+
+
+def test_an_inbox_on_a_real_other_disk_is_emptied(tmp_path: Path) -> None:
+    shared = Path("/dev/shm")
+    if not shared.is_dir() or shared.stat().st_dev == tmp_path.stat().st_dev:
+        pytest.skip("there is no second file system here")
+    intake = Intake(tmp_path)
+    with TemporaryDirectory(dir=shared) as inbox:
+        name = os.fsdecode("Häus\n😀".encode() + b"\xff" + b"x" * 230 + b".png")
+        drop(Path(inbox), name)
+        intake.arrivals.take(Path(inbox) / name, None)
+        assert os.listdir(inbox) == []
+    (job,) = intake.journal.jobs()
+    assert (intake.folders.path(job.id) / "source.png").read_bytes() == b"picture"
+    assert job.name.startswith("Häus\\n😀\\xffxxx")
+
+
+def test_priority_decides_which_of_those_that_wait_is_planned_and_drawn_first(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, "order = 'priority'")
+    for name in ("a.png", "12-b.png", "3-c.png", "3-d.png"):
+        drop(intake.inbox, name)
+        intake.take(name, None)
+    begun = [intake.desk.begin_planning() for _ in range(2)]
+    assert [job.name for job in begun if job] == ["3-c.png", "3-d.png"]
+    for job in reversed(begun):
+        assert job is not None
+        intake.desk.end_planning(job.id)
+    drawn = intake.desk.begin_drawing()
+    assert drawn is not None
+    assert drawn.name == "3-c.png"
