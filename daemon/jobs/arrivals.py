@@ -17,6 +17,7 @@ from daemon.intake.inbox import readable
 from daemon.intake.side import Wishes, parse, read_bytes
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import source_of
+from daemon.jobs.record import read_record
 from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME, with_wishes
 
@@ -59,11 +60,15 @@ class Arrivals:
             self._desk.step(job, State.CANCELLED, words)
 
     def recover(self, inbox: Path) -> None:
-        """After a start, before the desk: make the jobs whose pictures had come in but were not recorded."""
+        """After a start, before the desk: make the jobs whose pictures had come in but were not recorded.
+
+        Where the journal is lost, the folders of the others have a record each, and the desk takes them over.
+        """
         folders = self._desk.folders
         folders.finish_claims(inbox)
         for job in folders.strays({job.id for job in self._desk.journal.jobs()}):
-            arrival = _arrived(folders.path(job) / ARRIVAL_NAME)
+            folder = folders.path(job)
+            arrival = _arrived(folder / ARRIVAL_NAME) if read_record(folder) is None else None
             if arrival is not None and self._desk.journal.job(job) is None:
                 beside = inbox / arrival["side"] if arrival["side"] else None
                 made = [job, *(_copies_of(folders.root, job) if arrival["copies"] > 1 else [])]

@@ -263,3 +263,19 @@ def test_priority_decides_which_of_those_that_wait_is_planned_and_drawn_first(tm
     drawn = intake.desk.begin_drawing()
     assert drawn is not None
     assert drawn.name == "3-c.png"
+
+
+def test_where_the_journal_is_lost_no_drawing_is_taken_for_a_picture_that_has_just_come(tmp_path: Path) -> None:
+    intake = Intake(tmp_path)
+    for name in ("a.png", "b.png"):
+        drop(intake.inbox, name)
+        intake.take(name, None)
+    done = intake.journal.jobs()[0].id
+    for state in (State.PLANNING, State.PLANNED, State.DRAWING, State.DONE):
+        intake.desk.step(done, state)
+    intake.journal.close()
+    for file in tmp_path.glob("journal.sqlite*"):
+        file.unlink()
+    intake = Intake(tmp_path)
+    intake.recover()
+    assert [(job.name, job.state.value) for job in intake.journal.jobs()] == [("a.png", "done"), ("b.png", "queued")]
