@@ -29,6 +29,7 @@ from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
 from daemon.jobs.frame import places_of
+from daemon.jobs.mending import Mending
 from daemon.jobs.open_journal import open_journal
 from daemon.jobs.orders import MachineOrder
 from daemon.jobs.pen_life import PenLife
@@ -104,11 +105,14 @@ def parts_of(
         recorder = at_end.enter_context(closing(Recorder(record))) if record else None
         pulse = Pulse()
         beats = Beats(pulse)
+        mending = Mending(
+            settings.machines[name],
+            lambda hear, still: opened(settings.machines[name], beats.hearing(hear), still, recorder, beats.turned),
+            say=diary.say,
+        )
         drawing = Drawing(
             desk,
-            opened=lambda hear, still: opened(
-                settings.machines[name], beats.hearing(hear), still, recorder, beats.turned
-            ),
+            opened=mending.opened,
             moves=moves_of(settings.machines[name]),
             places=replace(places_of(pool, desk), homes=homes(settings.machines[name])),
             load=load_program,

@@ -14,9 +14,18 @@ from daemon.errors import SettingsError
 SIMULATED_GRBL = "sim://grbl"
 _PAPER_UP_MM = -5.0
 _WAYS = {
-    "grbl": (("serial:///", "tcp://"), "auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"),
-    "emco": (("file:///", "serial:///", "tcp://"), "file:///FOLDER, serial:///dev/NAME, tcp://HOST:PORT or sim://emco"),
-    "dobot": (("serial:///", "tcp://"), "auto, serial:///dev/NAME, tcp://HOST:PORT or sim://dobot"),
+    "grbl": (
+        ("serial:///", "usb://", "tcp://"),
+        "auto, serial:///dev/NAME, usb://PLACE, tcp://HOST:PORT or sim://grbl",
+    ),
+    "emco": (
+        ("file:///", "serial:///", "usb://", "tcp://"),
+        "file:///FOLDER, serial:///dev/NAME, usb://PLACE, tcp://HOST:PORT or sim://emco",
+    ),
+    "dobot": (
+        ("serial:///", "usb://", "tcp://"),
+        "auto, serial:///dev/NAME, usb://PLACE, tcp://HOST:PORT or sim://dobot",
+    ),
 }
 """How the url of each device may begin, and how that is said."""
 
@@ -26,6 +35,8 @@ class Machine(Section):
 
     device: str
     url: str = "auto"
+    may_reset_usb: bool = False
+    """A USB adapter behind which the machine is mute is reset, once: some wedge. It loses its power for a moment."""
     home: Literal["never", "start", "job"] = "never"
     """When the machine finds its home: never, when it is opened, or before each job as well."""
     park_mm: PairMm = (0.0, 0.0)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from daemon.config import DobotMachine
 from daemon.jobs.moves import DobotMoves
 from daemon.machine.open import Conversation, OpenedMachine, Record, open_machine
-from daemon.machine.ports import find_dobot
+from daemon.machine.ports import find_dobot, named
 from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_by
 from daemon.program.dobot import write_dobot
@@ -45,7 +45,7 @@ def opened(
     machine: DobotMachine, hear: Callable[[Event], None], *, still: bool, record: Record
 ) -> OpenedMachine[DobotSession]:
     return open_machine(
-        machine.url if machine.url != "auto" else find_dobot(adapters()),
+        find_dobot(adapters()) if machine.url == "auto" else named(machine.url, adapters),
         conversation(machine, still=still),
         # An asserted line can reset the arm's controller, or start its boot loader.
         framing=Framing(machine.baud, dtr=False),

@@ -14,14 +14,15 @@ from daemon.jobs.pens import z_pen_of
 from daemon.machine.file_drop import FileDrop
 from daemon.machine.link import Promise, promise_nothing
 from daemon.machine.open import Conversation, Record, open_machine
-from daemon.machine.serial_port import Framing
+from daemon.machine.ports import named
+from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_by
 from daemon.program.emco import stop_lines, write_emco
 from daemon.shapes import Program, Toolpath
 from firmware_protocol.emco.dialects import DIALECTS
 from firmware_protocol.emco.line_format import FORMATS
-from firmware_protocol.emco.simulator.motion import line_times_s
 from firmware_protocol.emco.session import BlockSession, Control, XonXoffSession
+from firmware_protocol.emco.simulator.motion import line_times_s
 from firmware_protocol.emco.simulator.simulator import EmcoSimulator, simulator_from
 from firmware_protocol.ink import PenRule, Vector
 from firmware_protocol.session import Ended, Event, Verdict
@@ -52,7 +53,7 @@ def opened(machine: EmcoMachine, hear: Callable[[Event], None], *, still: bool, 
         return FileMachine(Path(urlsplit(machine.url).path), heard=hear)
     line = FORMATS[machine.preset]
     return open_machine(
-        machine.url,
+        named(machine.url, adapters),
         conversation(machine, still=still),
         framing=Framing(machine.baud, line.bits, _PARITY[line.parity], line.stop),
         simulate=lambda: _simulated(machine),

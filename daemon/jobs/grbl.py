@@ -9,7 +9,7 @@ from daemon.config import GrblMachine, ZPenSettings
 from daemon.jobs.moves import GrblMoves
 from daemon.jobs.pens import pen_of
 from daemon.machine.open import Conversation, OpenedMachine, Record, open_machine
-from daemon.machine.ports import find_grbl
+from daemon.machine.ports import find_grbl, named
 from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_of
 from daemon.program.gcode import lift_lines, write_gcode
@@ -46,7 +46,7 @@ def opened(
     machine: GrblMachine, hear: Callable[[Event], None], *, still: bool, record: Record
 ) -> OpenedMachine[GrblSession]:
     return open_machine(
-        machine.url if machine.url != "auto" else find_grbl(adapters(), on_usb=inventory().ids),
+        find_grbl(adapters(), on_usb=inventory().ids) if machine.url == "auto" else named(machine.url, adapters),
         conversation(machine, still=still),
         framing=Framing(machine.baud),
         simulate=lambda: simulator_of(machine.url, pen=touches(machine)),

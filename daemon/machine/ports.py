@@ -1,4 +1,4 @@
-"""Which port the GRBL controller is on: by USB ids first, by its banner where several fit."""
+"""Which port a machine is on: by the place of its adapter, by USB ids, by its banner where several fit."""
 
 from __future__ import annotations
 
@@ -35,6 +35,26 @@ of them too, so an id makes a candidate, never a machine."""
 
 DOBOT_IDS = frozenset({(0x10C4, 0xEA60), (0x1A86, 0x7523), (0x1A86, 0x55D4)})
 """CP210x, CH340 and CH9102, as the drivers of the Dobot Magician look for them."""
+
+
+RESETTABLE_IDS = frozenset({(0x1A86, 0x7523), (0x1A86, 0x5523), (0x1A86, 0x55D4), (0x10C4, 0xEA60), (0x10C4, 0xEA70)})
+"""CH340, CH341, CH9102, CP210x and CP2105: they can wedge, and a reset of the USB frees them."""
+
+USB_URL = "usb://"
+"""A port by the place where its adapter is plugged in, `usb://1-1.4`; its path may be another one tomorrow."""
+
+
+def named(url: str, ports: Callable[[], Sequence[Adapter]]) -> str:
+    """The port that a url names: for usb://PLACE the path it has now, any other as it is. Raises NoMachine."""
+    if not url.startswith(USB_URL):
+        return url
+    place = url.removeprefix(USB_URL)
+    path = next((port.path for port in ports() if port.place.partition(":")[0] == place), None)
+    if path is None:
+        raise NoMachine(
+            f"no serial adapter is plugged in at USB {place}: plug it in there; `linedrawd usb` tells places"
+        )
+    return path
 
 
 def candidates(ports: Sequence[Adapter]) -> tuple[Adapter, ...]:

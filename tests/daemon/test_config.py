@@ -33,7 +33,7 @@ def settings(text: str, folder: Path, *, device: str | None = None, port: str | 
         ("[machines]\nleft = 3", "[machines] left: "),
         ("paths = 3", "paths: Input should be a valid dictionary"),
         ("[sheet]\nerror_mm = inf", "[sheet] error_mm: Input should be a finite number"),
-        ("[machines.left]\nurl = 'usb:3'", "use auto, serial:///dev/NAME, tcp://HOST:PORT or sim://grbl"),
+        ("[machines.left]\nurl = 'usb:3'", "use auto, serial:///dev/NAME, usb://PLACE, tcp://HOST:PORT or sim://grbl"),
         ("[machines.left]\nurl = 'sim://emco'", "use sim://grbl"),
         (
             "[machines.left]\ndevice = 'laser'",

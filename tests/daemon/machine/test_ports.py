@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from daemon.errors import NoMachine
-from daemon.machine.ports import candidates, find_grbl, is_grbl
+from daemon.machine.ports import candidates, find_grbl, is_grbl, named
 from daemon.machine.serial_port import Adapter
 from daemon.machine.simulated import SimulatedTransport
 from daemon.machine.transport import Transport
@@ -74,3 +74,15 @@ def test_none_that_answers_lists_the_candidates() -> None:
 @pytest.mark.parametrize(("machine", "answer"), [(grbl, True), (locked_grbl, True), (mute, False)])
 def test_grbl_is_known_by_its_banner_locked_or_not(machine: object, answer: bool) -> None:
     assert is_grbl(machine()) is answer  # type: ignore[operator]
+
+
+def test_a_port_is_named_by_the_place_where_it_is_plugged_in() -> None:
+    uno_by_interface = Adapter("/dev/ttyACM7", 0x2341, 0x0043, "1-1.1:1.0")
+    assert named("usb://1-1.2", lambda: [MODEM, CH340]) == "/dev/ttyUSB0"
+    assert named("usb://1-1.1", lambda: [uno_by_interface]) == "/dev/ttyACM7"
+    assert named("serial:///dev/ttyS0", lambda: []) == "serial:///dev/ttyS0"
+
+
+def test_a_place_where_nothing_is_plugged_in_is_named() -> None:
+    with pytest.raises(NoMachine, match=r"no serial adapter is plugged in at USB 1-1\.9: plug it in there"):
+        named("usb://1-1.9", lambda: [CH340, MODEM])
