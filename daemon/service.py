@@ -38,7 +38,7 @@ from daemon.jobs.pool import Pool
 from daemon.jobs.retention import Retention
 from daemon.jobs.runner import Runner
 from daemon.jobs.scanning import Scanning
-from daemon.jobs.sheet import homes
+from daemon.jobs.sheet import counts_from_home, homes
 from daemon.machine.recorder import Recorder
 from daemon.notify import Notifier
 from daemon.program.file import load_program
@@ -110,11 +110,12 @@ def parts_of(
             lambda hear, still: opened(settings.machines[name], beats.hearing(hear), still, recorder, beats.turned),
             say=diary.say,
         )
+        machine = settings.machines[name]
         drawing = Drawing(
             desk,
             opened=mending.opened,
             moves=moves_of(settings.machines[name]),
-            places=replace(places_of(pool, desk), homes=homes(settings.machines[name])),
+            places=replace(places_of(pool, desk), homes=homes(machine), counts_from_home=counts_from_home(machine)),
             load=load_program,
             measure=lambda folder: beats.measuring(pool, folder, name),
             inked=pen.drew,

@@ -20,15 +20,13 @@ from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
 from daemon.jobs.progress import Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
 from daemon.jobs.retry import IDLE_S, retry_after_s
-from daemon.jobs.states import State
+from daemon.jobs.states import HOW_ON, OUTCOMES, State, outcome_of
 from daemon.shapes import Program
 from firmware_protocol.session import Accepted, Ended, Event, Verdict
 
 _ENDED = "linedrawd ended in the middle of a drawing: set the pen to its origin and put in a new sheet"
 """The next one opens the port anew, which makes an origin of wherever the pen stands."""
 
-_STATES = {Verdict.FINISHED: State.DONE, Verdict.REJECTED: State.FAILED}
-"""Every other verdict leaves the job interrupted."""
 _PORT_STAYS_OPEN = {Verdict.FINISHED, Verdict.STOPPED, Verdict.REJECTED}
 
 Open: TypeAlias = Callable[[Callable[[Event], None], bool], OpenMachine]
@@ -145,7 +143,8 @@ class Drawing:
                 self._open(still=still)
             assert self._machine is not None
             words = obey(order, self._machine, self._moves, self._places)
-            self._placed = self._placed or order.name in ("origin", "home")
+            placed = order.name == "origin" or (order.name == "home" and self._places.counts_from_home)
+            self._placed = self._placed or placed
         except (NoMachine, MachineFault) as error:
             self._lost(error)
             raise
@@ -247,14 +246,13 @@ class Drawing:
             self._give_back()
         self._report(job, ink, real_s)
         self._inked(self._desk.folders.path(job.id), ended.strokes_certain)
-        cancelled = self._desk.is_cancelled(job.id) and ended.verdict is Verdict.STOPPED
-        state = State.CANCELLED if cancelled else _STATES.get(ended.verdict, State.INTERRUPTED)
-        if state is State.INTERRUPTED and not ended.strokes_possible:
-            # Not one stroke is touched, so that nothing is lost by beginning again when a person says `go`.
-            state = State.PLANNED
+        cancelled = self._desk.is_cancelled(job.id)
+        state = outcome_of(ended.verdict, touched=ended.strokes_possible > 0, cancelled=cancelled)
         if not self._desk.held:
-            self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=cancelled or state is State.DONE)
+            self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=state in (State.CANCELLED, State.DONE))
         extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)
+        if state is State.INTERRUPTED:
+            words += f"; {OUTCOMES[ended.verdict].remedy}, then {HOW_ON.format(job=job.id)}"
         self._desk.end_drawing(job.id, state, words, extent=extent, real_s=real_s, port=port)
 
     def _go_on_or_hold(self, why: str, *, on: bool) -> None:

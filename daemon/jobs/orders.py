@@ -43,6 +43,8 @@ class Places:
     frame_mm: Callable[[str], Sequence[PointMm]]
     next_program: Callable[[], Program]
     homes: bool = False
+    counts_from_home: bool = False
+    """Homed, it knows its origin; otherwise that is where a person has put the pen."""
 
 
 def obey(order: MachineOrder, machine: OpenMachine, moves: Moves, places: Places) -> str:

@@ -43,8 +43,11 @@ def reach_low_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
 
 def homes(machine: Machine) -> bool:
     """It knows where the sheet's origin is whenever its port has been opened: by switches, or by its control's G54."""
-    return (
-        isinstance(machine, EmcoMachine)
-        or (isinstance(machine, DobotMachine) and machine.home != "never")
-        or (isinstance(machine, GrblMachine) and machine.home != "never" and machine.origin == "homed")
-    )
+    if isinstance(machine, GrblMachine | DobotMachine):
+        return machine.home != "never" and counts_from_home(machine)
+    return True
+
+
+def counts_from_home(machine: Machine) -> bool:
+    """Homed, it knows where the sheet's origin is."""
+    return isinstance(machine, DobotMachine) or (isinstance(machine, GrblMachine) and machine.origin == "homed")

@@ -127,6 +127,13 @@ def test_a_daemon_that_is_killed_before_it_goes_on_still_knows_from_where(bench:
     after.journal.close()
 
 
+def test_a_machine_that_has_only_moved_knows_no_origin(bench: Bench, choices: Choices) -> None:
+    interrupted(bench)
+    bench.drawing.obey(MachineOrder("park"))
+    with pytest.raises(LinedrawError, match="does not know where the sheet's origin is"):
+        choices.resume_from("1", 1)
+
+
 @pytest.mark.parametrize(("job", "stroke"), [("1", 2), ("7", 0), ("2", 0)])
 def test_a_stroke_or_job_that_there_is_not_is_refused(bench: Bench, choices: Choices, job: str, stroke: int) -> None:
     interrupted(bench, known=True)

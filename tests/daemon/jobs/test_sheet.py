@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.config import GrblMachine, Sheet
-from daemon.jobs.sheet import box_origin_mm, reach_low_mm
+from daemon.config import DobotMachine, EmcoMachine, GrblMachine, Machine, Sheet
+from daemon.jobs.sheet import box_origin_mm, homes, reach_low_mm
 
 
 @pytest.mark.parametrize(
@@ -36,3 +36,19 @@ def test_homed_the_corner_lies_where_the_settings_say_and_the_reach_begins_at_no
 def test_homed_the_reach_ends_at_nought_where_the_corner_lies_below_it() -> None:
     machine = GrblMachine(origin="homed", origin_mm=(-190, -90), reach_mm=(200, 100))
     assert reach_low_mm(Sheet(), machine) == (-200, -100)
+
+
+@pytest.mark.parametrize(
+    ("machine", "knows"),
+    [
+        (GrblMachine(), False),
+        (GrblMachine(home="start", origin="homed", origin_mm=(-200.0, -200.0)), True),
+        (EmcoMachine(device="emco"), True),
+        (DobotMachine(device="dobot"), True),
+        (DobotMachine(device="dobot", home="never"), False),
+    ],
+)
+def test_a_machine_knows_its_origin_by_itself_where_it_homes_and_counts_from_there(
+    machine: Machine, knows: bool
+) -> None:
+    assert homes(machine) is knows
