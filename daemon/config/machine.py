@@ -34,7 +34,9 @@ class Machine(Section):
     """What every machine has. Positions are in mm of the sheet, or of the machine where it has been homed."""
 
     device: str
+    """The kind of the machine."""
     url: str = "auto"
+    """auto (found on the USB), serial:///dev/NAME, usb://PLACE, tcp://HOST:PORT, or file:///FOLDER for an EMCO."""
     may_reset_usb: bool = False
     """A USB adapter behind which the machine is mute is reset, once: some wedge. It loses its power for a moment."""
     home: Literal["never", "start", "job"] = "never"
@@ -42,9 +44,11 @@ class Machine(Section):
     park_mm: PairMm = (0.0, 0.0)
     """Where the pen waits."""
     draw_mm_s: Annotated[float, Field(gt=0, le=1000)] = 20.0
+    """How fast the lowered pen is moved."""
     resolution_mm: Annotated[float, Field(ge=0, le=1)] = 0.02
     """Shorter moves are not sent: the length of a few steps of the motors."""
     pen: PenSettings = ZPenSettings()
+    """How the pen is lowered and lifted: a section of its own."""
     pen_life_m: Positive | None = None
     """After so many metres of line the pen is worn, which is said; a file PEN in the inbox tells that it is new."""
     sheet: Literal["ask", "feed", "auto"] = "auto"
@@ -81,16 +85,21 @@ class GrblMachine(Machine):
 
     device: Literal["grbl"] = "grbl"
     baud: Annotated[int, Field(gt=0)] = 115200
+    """Of the serial line."""
     flow: Literal["count", "line"] = "count"
     """"count" fills the controller's buffer, "line" waits for each answer: for clones that lose bytes."""
     reach_mm: tuple[Positive, Positive] = (200.0, 200.0)
+    """How far the machine gets from its origin in X and Y."""
     origin: Literal["here", "homed"] = "here"
     """"here": the sheet's corner lies where the pen stands when the port is opened; "homed": at origin_mm."""
     origin_mm: PairMm = (0.0, 0.0)
+    """Where the sheet's corner lies on a homed machine."""
     dialect: Literal["grbl", "paper"] = "grbl"
+    """"paper" writes programs as the paper's own machine reads them."""
     units: Literal["mm", "cm", "inch"] = "mm"
     """Of a program in the paper's dialect, which does not say its units itself."""
     lift_after_restart: bool = True
+    """A pen that a restarted controller may have left down is lifted, by the settings of the pen."""
     may_set: bool = False
     """Settings of the controller that would spoil a drawing are corrected, not only named."""
     dry_run: bool = False
@@ -140,19 +149,25 @@ class EmcoMachine(Machine):
     link: Literal["file", "xonxoff", "blocks"] = "xonxoff"
     """A file in a folder that WinNC reads, serial text, or a block a line that the other side acknowledges."""
     dialect: Literal["siemens", "fanuc"] = "siemens"
+    """Which WinNC is started at the control."""
     preset: Literal["7E1", "7E2", "8N1"] = "7E1"
     """Data bits, parity, stop bits."""
     baud: Annotated[int, Field(ge=110, le=115200)] = 9600
+    """As set at the control."""
     xoff_limit_s: Positive = 300.0
     """A control that holds the transfer for longer has stopped."""
     wait_for_xon: bool = True
     """The transfer begins when the control asks for it, not when the job does."""
     ack: Annotated[str, Field(min_length=1, max_length=16)] = "\x06"
+    """What acknowledges a block: a control character or a text such as "ok"."""
     nak: Annotated[str, Field(min_length=1, max_length=16)] = "\x15"
-    """What acknowledges a block and what asks for it again: a control character or a text such as "ok"."""
+    """What asks for it again."""
     answer_within_s: Positive = 10.0
+    """A block that is not acknowledged for longer is sent again."""
     retries: Annotated[int, Field(ge=0, le=100)] = 3
+    """So often; then the transfer ends."""
     reach_mm: tuple[Positive, Positive] = (350.0, 250.0)
+    """How far the machine gets from X0 Y0."""
     pen: ZPenSettings = ZPenSettings()
 
     @model_validator(mode="before")
@@ -183,6 +198,7 @@ class DobotMachine(Machine):
     device: Literal["dobot"]
     home: Literal["never", "start", "job"] = "start"
     baud: Annotated[int, Field(gt=0)] = 115200
+    """Of the serial line."""
     sheet_origin_mm: PairMm = (190.0, -57.0)
     """The sheet's lower left corner, seen from the middle of the base."""
     straight: Literal["CP", "PTP"] = "CP"

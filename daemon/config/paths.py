@@ -16,9 +16,13 @@ class Paths(Section):
     """Where everything lies; nothing is written anywhere else."""
 
     state_dir: Path
+    """Jobs, journal and, unless said otherwise, everything else."""
     inbox: Path
+    """Where pictures are dropped."""
     log_dir: Path
+    """Where linedrawd.log is written."""
     runtime_dir: Path
+    """status.json and the control socket; best in memory."""
 
     @property
     def jobs(self) -> Path:

@@ -14,9 +14,13 @@ class ZPenSettings(Section):
     """The pen hangs on the Z axis; up is +Z, only the paper's own machine has it at Z-5."""
 
     kind: Literal["z"] = "z"
+    """The pen hangs on the Z axis."""
     up_mm: float = 5.0
+    """Z where it is lifted."""
     down_mm: float = 0.0
+    """Z where it draws."""
     plunge_mm_s: Positive = 10.0
+    """How fast it is lowered."""
 
     def check_lifts(self) -> None:
         """Raises ValueError when up is not above down."""
@@ -28,6 +32,7 @@ class ServoPenSettings(Section):
     """The pen hangs on a servo driven by the spindle output: `M3 S...`."""
 
     kind: Literal["servo"]
+    """The pen hangs on a servo driven by the spindle output."""
     up_s: Annotated[float, Field(ge=0)] = 0.0
     """The S word that lifts the pen; a number for the controller, no time."""
     down_s: Annotated[float, Field(ge=0)] = 1000.0

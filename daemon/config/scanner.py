@@ -18,10 +18,13 @@ _OURS = (
 
 class Scanner(Section):
     kind: Literal["sane", "none"] = "sane"
+    """"none": there is no scanner, whatever the rest of this section says."""
     device: str = ""
     """As `scanimage -L` names it; the only one where nothing is said."""
     resolution_dpi: Annotated[int, Field(ge=50, le=2400)] = 300
+    """What the scanner is asked for; it may take another, which is read from the page."""
     mode: str = "Gray"
+    """As the scanner calls it."""
     source: str = ""
     """As the scanner calls its glass or feeder; a feeder is emptied, each page is a picture."""
     size_mm: tuple[Positive, Positive] | None = None
@@ -31,9 +34,11 @@ class Scanner(Section):
     )
     """Further options of the scanner's driver, as `scanimage -A` lists them; true: one that takes no value."""
     page_within_s: Annotated[float, Field(ge=1, le=3600)] = 120.0
+    """A page that takes longer is broken off."""
     button: str = ""
     """The name of the button that scans, as `scanimage -A` lists it."""
     button_every_s: Annotated[float, Field(ge=0.2, le=60)] = 1.0
+    """So often the button is looked at."""
 
     @field_validator("options")
     @classmethod

@@ -13,9 +13,11 @@ class Intake(Section):
     settle_s: Annotated[float, Field(ge=0, le=600)] = 1.0
     """How long size and time of a file must stay the same; three times as long where nobody said it was closed."""
     max_megapixels: Positive = 100.0
+    """Larger pictures are refused before they are decoded."""
     watch: Literal["events", "poll"] = "events"
     """"poll" looks every poll_s: for a folder of another computer, whose changes nobody tells us."""
     poll_s: Annotated[float, Field(ge=0.1, le=3600)] = 2.0
+    """Seconds between two looks of "poll"."""
     order: Literal["arrival", "name", "priority"] = "arrival"
     """Which picture is drawn first; "priority": those whose names begin with a number and `-`, the lowest first."""
     duplicates: Literal["draw", "skip"] = "draw"
@@ -26,7 +28,9 @@ class Keep(Section):
     """How much is kept. Only jobs that are over are ever removed, the oldest first."""
 
     jobs_days: Positive = 90.0
+    """Folders of jobs that have been over for longer are removed."""
     jobs_mb: Positive = 4000.0
+    """As long as all jobs together take more, the oldest that is over is removed."""
     free_mb: Annotated[float, Field(ge=0)] = 200.0
     """With less free on the disk of the jobs no picture is taken any more."""
     log_mb: Annotated[float, Field(ge=0.01)] = 10.0
@@ -39,29 +43,39 @@ class Planning(Section):
     """Limits of the worker process, how it reads a page, and whether it says why in explain.json."""
 
     memory_mb: Annotated[int, Field(ge=128)] = 1024
+    """A picture that needs more memory to be planned fails, alone."""
     time_limit_s: Positive = 300.0
+    """A picture that needs longer to be planned fails, alone."""
     threads: Annotated[int, Field(ge=1, le=64)] = 1
-    ahead: Annotated[int, Field(ge=1)] = 2  # jobs that are planned before the machine is free for them
+    """Of the network, while a picture is planned."""
+    ahead: Annotated[int, Field(ge=1)] = 2
+    """Jobs that are planned before the machine is free for them."""
     graph: Literal["repaired", "paper"] = "repaired"
+    """"paper" reads a page strictly by the equations of the paper; "repaired" lets the ink decide."""
     explain: bool = False
+    """Writes into explain.json why each line is drawn as it is."""
 
 
 class Sheet(Section):
     """Where on the sheet a picture is drawn, in mm inwards from the corner where the origin lies, and how exactly."""
 
     box_mm: tuple[Positive, Positive] = (64.0, 64.0)
+    """Width and height of the box that a drawing is fitted into."""
     box_origin_mm: PairMm = (25.0, 25.0)
+    """The box's corner that is nearest to the origin."""
     corner: Literal["lower left", "lower right", "upper left", "upper right"] = "lower left"
     """The sheet's corner where the origin lies; x still runs to the right and y up."""
     size: Literal["auto", "fit", "true"] = "auto"
     """"fit": as large as the box; "true": as large as the picture's resolution says, in the middle of the box; "auto":
     true for a page of the scanner, else fit."""
     margin_mm: Annotated[float, Field(ge=0)] = 0.0
+    """Kept free on all four sides within the box."""
     rotate: Literal[0, 90, 180, 270] = 0
     """Degrees clockwise."""
     mirror: bool = False
     """Left and right exchanged, before it is turned."""
     error_mm: Positive = 0.05
+    """So far a drawn line may lie from the one that was understood."""
 
     @model_validator(mode="after")
     def _room_inside_the_margin(self) -> Sheet:

@@ -20,7 +20,7 @@ UNIT = (HERE / "linedrawd.service").read_text(encoding="utf-8")
 
 def value(key: str) -> str:
     """The last value of a key of the unit."""
-    return re.findall(rf"^{key}=(.*)$", UNIT, re.MULTILINE)[-1]
+    return str(re.findall(rf"^{key}=(.*)$", UNIT, re.MULTILINE)[-1])
 
 
 def here(tmp_path: Path, *, drop_ins: bool = True) -> Path:
