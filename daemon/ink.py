@@ -38,7 +38,10 @@ def ink_threshold(grey: Grey) -> float | None:
     """Grey level at and below which a pixel is ink, None where the page holds none. See `ink_mask`."""
     if grey.size == 0:
         return None
-    histogram = np.bincount(grey.ravel(), minlength=256).astype(float)
+    # A row at a time: bincount makes eight bytes of each pixel first.
+    histogram = np.zeros(256)
+    for row in grey:
+        histogram += np.bincount(row, minlength=256)
     paper, grain = _paper(histogram, _otsu(histogram))
     darkness = np.where(np.arange(256) < paper - max(LEAST_CONTRAST, _NOISES * grain), histogram, 0.0).cumsum()
     if not darkness[-1]:
@@ -52,10 +55,10 @@ def thin(mask: Mask) -> Mask:
     mask: bool (H, W). Returns bool (H, W), a subset of it: an 8-connected line for a line, one pixel for a dot, a
     ring for a ring. Parallel in two alternating passes; only pixels whose surroundings changed are looked at again.
     """
-    ink = np.pad(mask.astype(np.uint8), 1)
+    ink = np.pad(mask.view(np.uint8), 1)
     flat, codes = ink.reshape(-1), _codes(ink).reshape(-1)
     steps = [dy * ink.shape[1] + dx for dy, dx in _AROUND]
-    scratch = np.empty(flat.size, np.intp)
+    scratch = np.empty(flat.size, np.int32)
     now = later = np.flatnonzero(flat & (codes != 255))
     even = 0
     while now.size or later.size:
@@ -63,7 +66,7 @@ def thin(mask: Mask) -> Mask:
         changed = _once(_remove(removed, flat, codes, steps), scratch)
         now, later = _once(np.concatenate([later[flat[later] != 0], changed]), scratch), changed
         even = 1 - even
-    return ink[1:-1, 1:-1].astype(bool)
+    return np.ascontiguousarray(ink[1:-1, 1:-1]).view(np.bool_)
 
 
 def _otsu(histogram: NDArray[np.float64]) -> int:
@@ -107,9 +110,9 @@ def _remove(
     return np.concatenate(told)
 
 
-def _once(pixels: NDArray[np.intp], scratch: NDArray[np.intp]) -> NDArray[np.intp]:
+def _once(pixels: NDArray[np.intp], scratch: NDArray[np.int32]) -> NDArray[np.intp]:
     """Each pixel once, without sorting: of equal ones the last to write its number stays."""
-    numbers = np.arange(pixels.size)
+    numbers = np.arange(pixels.size, dtype=np.int32)
     scratch[pixels] = numbers
     last: NDArray[np.bool_] = scratch[pixels] == numbers
     return pixels[last]

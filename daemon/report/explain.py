@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +14,15 @@ from daemon.report.canvas import Colour, Picture
 from daemon.report.fidelity import within
 from daemon.shapes import Drawing, Grey, LineGraph, PageImage, Points, Segmentation
 
+Level = TypeVar("Level", np.uint8, np.float32)
+
 _TILE_PX = 720
 _MARGIN_PX = 28
 _HEAD_PX = 56
 _WORDS_PX = 34
 _MISSED_PX = 2.5
+_PALE = np.asarray(184 + 71 * (np.arange(256) / np.float32(255)), np.uint8)
+"""Each grey level, pale."""
 
 
 def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawing: Drawing, *, name: str) -> Picture:
@@ -80,8 +86,13 @@ def _missed(page: PageImage, drawing: Drawing) -> Mask:
 
 
 def _channels(segmentation: Segmentation, scale: float) -> Picture:
-    lines, corners = segmentation.lines[..., None], segmentation.corners[..., None]
-    seen = np.full((*segmentation.lines.shape, 3), 255, np.float32)
+    """Large maps are made smaller before they get colours, which take six times as much memory."""
+    lines, corners = segmentation.lines, segmentation.corners
+    if scale < 1:
+        lines, corners = _resized(lines, scale), _resized(corners, scale)
+        scale = 1.0
+    lines, corners = lines[..., None], corners[..., None]
+    seen = np.full((*lines.shape[:2], 3), 255, np.float32)
     seen += lines * (np.array(canvas.BLUE, np.float32) - seen)
     seen += corners * (np.array(canvas.ORANGE, np.float32) - seen)
     return _resized(np.asarray(np.rint(np.clip(seen, 0, 255)), np.uint8), scale)
@@ -89,18 +100,18 @@ def _channels(segmentation: Segmentation, scale: float) -> Picture:
 
 def _faded(grey: Grey, scale: float) -> Picture:
     """The page, pale, so that thin lines on it can be told from it."""
-    return _enlarged(np.asarray(184 + 71 * (grey / np.float32(255)), np.uint8), scale)
+    return _enlarged(_PALE[grey], scale)
 
 
 def _enlarged(grey: Grey, scale: float) -> Picture:
     return np.asarray(cv2.cvtColor(_resized(grey, scale), cv2.COLOR_GRAY2BGR), np.uint8)
 
 
-def _resized(image: NDArray[np.uint8], scale: float) -> NDArray[np.uint8]:
+def _resized(image: NDArray[Level], scale: float) -> NDArray[Level]:
     """Pixels stay visible squares where a page is much enlarged, and are averaged where it is made smaller."""
     size = (max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale)))
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR if scale < 2 else cv2.INTER_NEAREST
-    return np.asarray(cv2.resize(image, size, interpolation=how), np.uint8)
+    return np.asarray(cv2.resize(image, size, interpolation=how), image.dtype)
 
 
 def _on_tile(points: Points, scale: float) -> Points:

@@ -29,7 +29,7 @@ def places(mask: Mask, *, longer_than_px: float) -> tuple[Place, ...]:
 
     mask: bool (H, W). A component holds pixels that touch by a side or a corner.
     """
-    stats = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)[2][1:]
+    stats = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)[2][1:]
     long = stats[stats[:, 2:4].max(axis=1) > longer_than_px]
     largest = long[np.argsort(-long[:, cv2.CC_STAT_AREA], kind="stable")][:MOST]
     return tuple(Place(*row) for row in largest.tolist())

@@ -76,14 +76,21 @@ class Segmenter:
         inked = list(tiles(page.grey < 255 - _BLANK, size_px=size_px, margin_px=MARGIN_PX))
         for first in range(0, len(inked), BATCH):
             batch = inked[first : first + BATCH]
-            answers = softmax(self.logits(np.stack([cut(page.grey, t, size_px) for t in batch])))
+            last = first + BATCH >= len(inked)
+            answers = softmax(self.logits(np.stack([cut(page.grey, t, size_px) for t in batch]), last=last))
             for tile, answer in zip(batch, answers, strict=True):
                 paste(maps, tile, answer)
         return Segmentation(*maps)
 
-    def logits(self, ink: NDArray[np.float32]) -> NDArray[np.float32]:
-        """ink float32 (N, H, W) in 0..1, H and W legal sizes -> float32 (N, 3, H, W)."""
-        answer: NDArray[np.float32] = self._session.run(None, {"ink": ink[:, None]})[0]
+    def logits(self, ink: NDArray[np.float32], *, last: bool = True) -> NDArray[np.float32]:
+        """ink float32 (N, H, W) in 0..1, H and W legal sizes -> float32 (N, 3, H, W).
+
+        last: the network gives the memory of its layers back, some 50 MB, which the rest of the page needs.
+        """
+        options = onnxruntime.RunOptions()
+        if last:
+            options.add_run_config_entry("memory.enable_memory_arena_shrinkage", "cpu:0")
+        answer: NDArray[np.float32] = self._session.run(None, {"ink": ink[:, None]}, options)[0]
         return answer
 
 
