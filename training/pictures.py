@@ -32,9 +32,10 @@ class Corners:
 def corners_of(picture: Path, label_of: Callable[[NDArray[np.float32]], NDArray[np.uint8]], tile_px: int) -> Corners:
     """Read as the daemon reads it: put right, scaled to the network's line width, through its windows."""
     page = prepare(decode(picture, max_megapixels=100))
-    label = np.zeros(page.grey.shape, np.uint8)
-    for tile in segmenter.tiles(page.grey < 192, size_px=tile_px, margin_px=segmenter.MARGIN_PX):
-        answer = label_of(segmenter.cut(page.grey, tile, tile_px)[None])[0]
+    grey = segmenter.soft_edged(page.grey)
+    label = np.zeros(grey.shape, np.uint8)
+    for tile in segmenter.tiles(grey < 192, size_px=tile_px, margin_px=segmenter.MARGIN_PX):
+        answer = label_of(segmenter.cut(grey, tile, tile_px)[None])[0]
         rows = slice(tile.core_top - tile.top, tile.core_bottom - tile.top)
         columns = slice(tile.core_left - tile.left, tile.core_right - tile.left)
         label[tile.core_top : tile.core_bottom, tile.core_left : tile.core_right] = answer[rows, columns]

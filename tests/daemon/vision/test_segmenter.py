@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from daemon.errors import SettingsError
-from daemon.shapes import PageImage, Segmentation
-from daemon.vision.segmenter import Segmenter, checked_file, cut, load_manifest
+from daemon.shapes import Grey, PageImage, Segmentation
+from daemon.vision.segmenter import Segmenter, checked_file, cut, load_manifest, soft_edged
 from daemon.vision.tiles import Tile
 
 
@@ -26,7 +26,11 @@ def page(width: int, height: int, *lines: tuple[int, int, int, int]) -> PageImag
     grey = np.full((height, width), 255, np.uint8)
     for x0, y0, x1, y1 in lines:
         cv2.line(grey, (x0, y0), (x1, y1), 0, 2, cv2.LINE_AA)
-    return PageImage(grey, np.eye(2, 3), width, height, "")
+    return page_of(grey)
+
+
+def page_of(grey: Grey) -> PageImage:
+    return PageImage(grey, np.eye(2, 3), grey.shape[1], grey.shape[0], "")
 
 
 def corners(found: Segmentation) -> list[tuple[int, int]]:
@@ -62,6 +66,20 @@ def test_blank_paper_is_background_and_nothing_else(segmenter: Segmenter) -> Non
 def test_a_line_through_many_windows_has_no_corner_at_their_seams(segmenter: Segmenter) -> None:
     found = segmenter.segment(page(900, 300, (40, 100, 860, 180)))
     assert near(corners(found), [(40, 100), (860, 180)])
+
+
+def test_a_circle_of_hard_pixels_is_no_corner(segmenter: Segmenter) -> None:
+    """Without soft edges the network strings corners along every curve of a bare raster."""
+    grey = np.full((221, 221), 255, np.uint8)
+    cv2.circle(grey, (110, 110), 70, 0, 3, cv2.LINE_8)
+    assert (segmenter.segment(page_of(grey)).corners > 0.5).sum() == 0
+
+
+def test_soft_edges_are_left_as_they_are() -> None:
+    grey = np.full((60, 60), 255, np.uint8)
+    cv2.circle(grey, (30, 30), 20, 0, 2, cv2.LINE_AA)
+    assert soft_edged(grey) is grey
+    assert soft_edged(np.where(grey < 128, 0, 255).astype(np.uint8)).std() > 0
 
 
 def test_a_window_beyond_the_page_sees_white_paper() -> None:
