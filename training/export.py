@@ -205,7 +205,7 @@ def save_weights(path: Path, checkpoint: Path) -> None:
     torch.save({"settled": settled, "config": state["config"], "progress": state["progress"]}, path)
 
 
-def write_manifest(model: Path, checkpoint: Path) -> None:
+def write_manifest(model: Path, checkpoint: Path, *, seen_before: int = 0) -> None:
     """NAME.json beside NAME.onnx: what the file is. training.evaluate --manifest adds how good it is."""
     state = torch.load(checkpoint, map_location="cpu")
     config, progress = state["config"], state["progress"]
@@ -220,7 +220,10 @@ def write_manifest(model: Path, checkpoint: Path) -> None:
         "legal_sizes_px": [size for size in range(CANVAS_PX, 400) if level_sizes(shape, size)],
         "net": asdict(shape),
         "run": {k: v for k, v in config.items() if k not in ("shape", "data", "raw", "start")},
-        "trained": {"images": progress["images"], "seconds": round(progress["seconds"])},
+        "trained": {
+            "images": seen_before + progress["images"],
+            "last_run": {"images": progress["images"], "seconds": round(progress["seconds"])},
+        },
         "data": "Quick, Draw! (Google), simplified and raw drawings",
         "data_licence": "CC BY 4.0",
         "figures": {},
@@ -238,6 +241,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--float", action="store_true", help="keep the float model too")
     parser.add_argument("--weights", type=Path, help="also write the bare weights, from which --start goes on")
+    parser.add_argument("--seen-before", type=int, default=0, help="canvases that the weights of --start had seen")
     given = parser.parse_args(arguments)
     model = build(load(given.checkpoint))
     if given.float:
@@ -246,7 +250,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     raw = quickdraw.read([given.raw], limit=2000) if given.raw else None
     pages = Pages(Canvases(simplified, raw, seed=7), CALIBRATION_PAGES, 0.5 if raw else 0.0)
     quantise(model, pages, given.out)
-    write_manifest(given.out, given.checkpoint)
+    write_manifest(given.out, given.checkpoint, seen_before=given.seen_before)
     if given.weights:
         save_weights(given.weights, given.checkpoint)
     print(f"{given.out}: {given.out.stat().st_size / 1e6:.2f} MB")
