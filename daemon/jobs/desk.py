@@ -13,12 +13,11 @@ from daemon.errors import DiskTrouble, LinedrawError
 from daemon.jobs.folder import JobFolders
 from daemon.jobs.journal import Job, Journal
 from daemon.jobs.record import read_record, write_record
-from daemon.jobs.states import State
+from daemon.jobs.states import HOW_ON, State
 
 DISK_RETRY_S = 10.0
 _INTERRUPTED = (
-    "the daemon ended while it was drawing, where the pen stands is unknown ({paper}): look at the sheet, then "
-    "`linedrawd again JOB` draws it anew, `linedrawd resume JOB --from-stroke K` goes on"
+    "the daemon ended while it was drawing, where the pen stands is unknown ({paper}): look at the sheet, then {how}"
 )
 _BEFORE_INK_ENDED = "the daemon ended before the first stroke: it is drawn when its turn comes"
 _GONE = "the folder of job {job} has gone, deleted by hand: drop the picture into the inbox again"
@@ -74,7 +73,7 @@ class Desk:
             # First: after a cut between the two nothing may start either.
             self.hold(f"job {job.id} was interrupted: look at the sheet, and set the pen to its origin again")
             self.cut_off = True
-            self.step(job.id, State.INTERRUPTED, _INTERRUPTED.format(paper=job.on_paper))
+            self.step(job.id, State.INTERRUPTED, _INTERRUPTED.format(paper=job.on_paper, how=HOW_ON.format(job=job.id)))
         for job in self.journal.jobs(State.QUEUED, *_READY):
             if not self.folders.path(job.id).is_dir():
                 self.step(job.id, State.FAILED, _GONE.format(job=job.id))

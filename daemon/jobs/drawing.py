@@ -271,7 +271,8 @@ class Drawing:
         try:
             _add_to_report(folder / "report.json", real_s)
             if ink is not None:
-                write_durably(folder / "ink.json", json.dumps({"strokes": ink}).encode())
+                strokes = [*(_ink_of(folder) if job.possible else []), *ink]
+                write_durably(folder / "ink.json", json.dumps({"strokes": strokes}).encode())
             if ink is not None and not self._desk.ending:
                 self._measure(folder)
         except (LinedrawError, ValueError) as error:
@@ -283,6 +284,13 @@ class Drawing:
                 self._progress.accepted(event.line)
         else:
             tell(event, say=self._desk.say, show=self._desk.show)
+
+
+def _ink_of(folder: Path) -> InkMm:
+    """What an earlier part of the drawing has left."""
+    path = folder / "ink.json"
+    ink: InkMm = json.loads(path.read_text(encoding="utf-8"))["strokes"] if path.exists() else []
+    return ink
 
 
 def _add_to_report(path: Path, real_s: float) -> None:

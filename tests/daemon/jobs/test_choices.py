@@ -94,6 +94,15 @@ def test_a_job_goes_on_from_the_stroke_that_a_person_names(bench: Bench, choices
     assert (bench.machine.opened, bench.machine.closed) == (1, 0)
 
 
+def test_the_ink_of_both_parts_is_measured_together(bench: Bench, choices: Choices) -> None:
+    bench.machine.ink = [[(1.0, 1.0), (9.0, 1.0)]]
+    job = interrupted(bench, known=True)
+    bench.machine.ink = [[(1.0, 5.0), (9.0, 5.0)]]
+    choices.resume_from("1", 1)
+    bench.drawing.turn()
+    assert '"ink_strokes": 2' in (bench.desk.folders.path(job) / "report.json").read_text()
+
+
 def test_a_machine_that_does_not_know_its_origin_is_given_one_first(bench: Bench, choices: Choices) -> None:
     interrupted(bench)
     with pytest.raises(LinedrawError, match="does not know where the sheet's origin is"):
