@@ -90,6 +90,7 @@ def parts_of(
         board = StatusBoard(paths.status)
         board.change(machine=name)
         journal = at_end.enter_context(closing(open_journal(paths.journal, say=diary.say)))
+        folders.go_on_behind(job.id for job in journal.jobs())
         desk = Desk(
             journal,
             folders,

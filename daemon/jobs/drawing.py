@@ -279,10 +279,9 @@ class Drawing:
             self._desk.trouble(f"the report is not complete: {error}", job=job.id)
 
     def _hear(self, event: Event) -> None:
-        if isinstance(event, Accepted):
-            if self._progress:
-                self._progress.accepted(event.line)
-        else:
+        if self._progress:
+            self._progress.hear(event)
+        if not isinstance(event, Accepted):
             tell(event, say=self._desk.say, show=self._desk.show)
 
 

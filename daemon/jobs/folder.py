@@ -7,7 +7,7 @@ import os
 import re
 import shutil
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -65,6 +65,10 @@ class JobFolders:
     def __init__(self, root: Path) -> None:
         self.root = make_folder(root)
         self._number = max((_number(name) for name in os.listdir(root)), default=0)
+
+    def go_on_behind(self, job_ids: Iterable[str]) -> None:
+        """No number of these jobs is given again, though their folders may have gone."""
+        self._number = max([self._number, *map(_number, job_ids)])
 
     def path(self, job_id: str) -> Path:
         return self.root / job_id

@@ -5,9 +5,10 @@ from __future__ import annotations
 import logging
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from daemon.shapes import Program
-from firmware_protocol.session import Ended, Event, Found, Paused, Sent, Verdict, Waiting
+from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Sent, Verdict, Waiting
 
 AHEAD = 18
 """So many lines a controller acknowledges before it has drawn them: those that its planner holds."""
@@ -16,38 +17,45 @@ AHEAD = 18
 class Progress:
     """How far a program has come: by the clock, between what has been acknowledged and what must have been drawn.
 
-    now: seconds on the machine's clock. A pause is time in which nothing was acknowledged, so it is not counted.
+    now: seconds on the machine's clock. Whatever is heard shows how far it is; the time of a pause is not counted.
     """
 
     def __init__(
         self, show: Callable[..., None], program: Program, line_times_s: Sequence[float], *, now: Callable[[], float]
     ) -> None:
         self._show, self._times_s, self._now = show, line_times_s, now
-        self._begun_s: float | None = None
+        self._line, self._begun_s, self._done_s = -1, 0.0, 0.0
+        self._paused = False
         last_line = {line.stroke: number for number, line in enumerate(program.lines) if line.stroke is not None}
         self._last_lines = [last_line[stroke] for stroke in sorted(last_line)]
+        self._stroke_ends_s = [self._time_s(line) for line in self._last_lines]
         self._lines = len(program.lines)
 
-    def accepted(self, line: int) -> None:
-        all_s = self._times_s[-1] if self._times_s else 0.0
-        done_s = self._done_s(line, all_s)
-        self._show(
-            state="drawing",
-            words="",
-            strokes_done=bisect_right(self._last_lines, line),
-            percent=round(100 * (done_s / all_s if all_s else (line + 1) / self._lines), 1),
-            seconds_left=round(all_s - done_s, 1),
-        )
+    def hear(self, event: Event) -> None:
+        if isinstance(event, Accepted):
+            if self._paused or self._line < 0:
+                self._begun_s, self._paused = self._now() - self._done_s, False
+            self._line = event.line
+            self._show(state="drawing", words="", **self._figures())
+        elif self._line >= 0 and not self._paused:
+            self._show(**self._figures())
+            self._paused = isinstance(event, Paused)
 
-    def _done_s(self, line: int, all_s: float) -> float:
-        now = self._now()
-        if self._begun_s is None:
-            self._begun_s = now
-        at_most_s = self._times_s[line] if line < len(self._times_s) else all_s
-        at_least_s = self._times_s[line - AHEAD] if 0 <= line - AHEAD < len(self._times_s) else 0.0
-        done_s = min(max(now - self._begun_s, at_least_s), at_most_s)
-        self._begun_s = now - done_s
-        return done_s
+    def _figures(self) -> dict[str, Any]:
+        all_s, now = self._times_s[-1] if self._times_s else 0.0, self._now()
+        at_least_s = self._time_s(self._line - AHEAD) if self._line >= AHEAD else 0.0
+        self._done_s = min(max(now - self._begun_s, at_least_s), self._time_s(self._line))
+        self._begun_s = now - self._done_s
+        drawn = (self._stroke_ends_s, self._done_s) if all_s else (self._last_lines, self._line)
+        return {
+            "strokes_done": bisect_right(*drawn),
+            "percent": round(100 * (self._done_s / all_s if all_s else (self._line + 1) / self._lines), 1),
+            "seconds_left": round(all_s - self._done_s, 1),
+        }
+
+    def _time_s(self, line: int) -> float:
+        """When this line will have been drawn; the end where the time model does not reach so far."""
+        return self._times_s[line] if line < len(self._times_s) else (self._times_s[-1] if self._times_s else 0.0)
 
 
 def tell(event: Event, *, say: Callable[..., None], show: Callable[..., None]) -> None:

@@ -36,6 +36,8 @@ class InstantMachine:
     name: str = "instant"
     endings: list[Ended] = field(default_factory=list)
     drawn: int = 0
+    line: int = 0
+    """That is being drawn: each takes a second."""
     unplugged: bool = False
     gone: type[MachineFault] = Unplugged
     missing: Exception | None = None
@@ -61,7 +63,7 @@ class InstantMachine:
         return self
 
     def now(self) -> float:
-        return 12.5 * self.drawn
+        return 12.5 * self.drawn + self.line
 
     def connect(self) -> Ready:
         return Ready("Instant 1", 128)
@@ -70,8 +72,9 @@ class InstantMachine:
         self.drawn += 1
         self.programs.append([line.text for line in program.lines])
         self.promised = promise(program.strokes, 0) if program.strokes else 0
-        for line in range(len(program.lines)):
-            self.heard(Accepted(line))
+        for self.line in range(len(program.lines)):
+            self.heard(Accepted(self.line))
+        self.line = 0
         self.while_drawing()
         if self.endings:
             return self.endings.pop(0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,6 +21,7 @@ from daemon.jobs.folder import JobFolders, source_of
 from daemon.jobs.journal import Journal
 from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME, settings_for
+from daemon.service import parts_of
 from tests.daemon.jobs.test_folder import drop
 
 WISHES = b"copies = 2\nsize_mm = 40\n"
@@ -279,3 +281,15 @@ def test_where_the_journal_is_lost_no_drawing_is_taken_for_a_picture_that_has_ju
     intake = Intake(tmp_path)
     intake.recover()
     assert [(job.name, job.state.value) for job in intake.journal.jobs()] == [("a.png", "done"), ("b.png", "queued")]
+
+
+def test_a_folder_that_a_person_deleted_leaves_its_number_used(tmp_path: Path) -> None:
+    intake = Intake(tmp_path)
+    drop(intake.inbox, "a.png")
+    intake.take("a.png", None)
+    intake.journal.close()
+    shutil.rmtree(intake.folders.path("000001-a"))
+    with parts_of(intake.settings) as parts:
+        drop(intake.inbox, "a.png")
+        Arrivals(parts.desk, intake.settings).take(intake.inbox / "a.png", None)
+        assert [job.id for job in parts.desk.journal.jobs()] == ["000001-a", "000002-a"]

@@ -13,7 +13,9 @@ from daemon.config import GrblMachine
 from daemon.jobs.devices import opened, program_of
 from daemon.jobs.progress import Progress
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
-from firmware_protocol.session import Accepted, Event, Verdict
+from firmware_protocol.session import Accepted, Event, Paused, Status, Verdict
+
+STATUS = Status("Run", (0.0, 0.0, 0.0))
 
 
 def wavy(strokes: int, *, seed: int = 1) -> Program:
@@ -36,7 +38,7 @@ def test_seconds_left_are_within_five_percent_of_the_truth_from_ten_percent_on(s
 
     def hear(event: Event) -> None:
         if isinstance(event, Accepted):
-            progress.accepted(event.line)
+            progress.hear(event)
             told.append((machine.now(), shown["percent"], shown["seconds_left"]))
 
     machine = opened(GrblMachine(url="sim://grbl"), hear, still=False)
@@ -59,12 +61,16 @@ def test_a_pause_takes_nothing_from_the_time_that_is_left() -> None:
     times_s = [float(line + 1) for line in range(100)]
     progress = Progress(lambda **values: shown.update(values), Program(lines, 1), times_s, now=lambda: now[0])
     for line in range(40):
-        progress.accepted(line)
+        progress.hear(Accepted(line))
         now[0] = 50.0 + max(0, line - 10)
     assert shown["seconds_left"] == pytest.approx(100 - 28)
-    now[0] += 1000.0
-    progress.accepted(40)
-    assert shown["seconds_left"] == 100 - 41
     now[0] += 1.0
-    progress.accepted(41)
-    assert shown["seconds_left"] == 100 - 42
+    progress.hear(Paused(0))
+    now[0] += 1000.0
+    progress.hear(STATUS)
+    assert shown["seconds_left"] == pytest.approx(100 - 30)
+    progress.hear(Accepted(40))
+    assert shown["seconds_left"] == pytest.approx(100 - 30)
+    now[0] += 1.0
+    progress.hear(STATUS)
+    assert shown["seconds_left"] == pytest.approx(100 - 31)
