@@ -6,8 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from daemon.config import DobotMachine, EmcoMachine, GrblMachine, Options, ServoPenSettings, Settings, load_settings
+from daemon.config import (
+    DobotMachine,
+    EmcoMachine,
+    GrblMachine,
+    Intake,
+    Options,
+    ServoPenSettings,
+    Settings,
+    load_settings,
+)
 from daemon.errors import SettingsError
+from daemon.intake.side import parse
 
 
 def settings(text: str, folder: Path, *, device: str | None = None, port: str | None = None) -> Settings:
@@ -150,3 +160,13 @@ def test_the_folders_of_the_service_are_taken_from_its_environment() -> None:
 def test_settings_travel_to_the_worker_and_back(tmp_path: Path) -> None:
     given = settings("[machines.a.pen]\nkind = 'servo'\n[sheet]\nbox_mm = [10, 20]", tmp_path)
     assert Settings.model_validate_json(given.model_dump_json()) == given
+
+
+def test_the_settings_that_the_inbox_page_shows_are_settings(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "inbox.md").read_text(encoding="utf-8")
+    _, side, _, shown, _ = page.split("```")
+    (tmp_path / "linedrawd.toml").write_text(shown.removeprefix("toml"))
+    settings = load_settings(Options(config=tmp_path / "linedrawd.toml"), environment={"HOME": str(tmp_path)})
+    assert settings.keep.free_mb == 200
+    assert settings.intake == Intake()
+    assert parse(side.removeprefix("toml").encode(), "house.toml").copies == 3
