@@ -18,7 +18,7 @@ CODE := daemon firmware_protocol training tests
 # onnxruntime reports home from its first import on unless this is set before it.
 export ORT_DISABLE_TELEMETRY := 1
 
-.PHONY: help demo test test-training test-system check format bench bench-fidelity faults fuzz generalisation peers clean
+.PHONY: help demo test test-training test-system check format bench bench-fidelity faults fuzz torture soak generalisation peers clean
 
 help: ## What there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -58,6 +58,12 @@ faults: $(VENV)/runtime ## Every fault of every simulated machine in three momen
 
 fuzz: $(VENV)/fuzz ## Random bytes into every parser, SECONDS_EACH (60) or BYTES (1e7) for each, whichever comes first
 	@$(BIN)/python -m tests.fuzz --seconds $(or $(SECONDS_EACH),60) --bytes $(or $(BYTES),1e7)
+
+torture: $(VENV)/runtime ## Kill everything that can be killed, at random moments: N=200, SEED=1
+	@$(BIN)/python -m tests.torture $(or $(N),200) --seed $(or $(SEED),1)
+
+soak: $(VENV)/runtime ## Draw for HOURS=72 of the machine's clock and DRAWINGS=5000: growth of memory, files and log
+	@$(BIN)/python -m tests.soak --hours $(or $(HOURS),72) --drawings $(or $(DRAWINGS),5000)
 
 generalisation: $(VENV)/runtime $(PEERS)/made ## docs/generalisation.png: our own drawings beside a rule-based tracer
 	@$(BIN)/python -m tests.benchmarks.fidelity.generalisation docs/generalisation.png

@@ -1,0 +1,163 @@
+"""What must be true after every kill: of the pictures, of the ink, and of what is said about both."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from daemon.errors import LinedrawError
+from daemon.jobs.folder import source_of
+from daemon.jobs.states import State
+from tests.torture.rig import Daemon, Machine, Sheet
+from tests.torture.sheet import Inked, Line, strokes_of, whose
+from tests.torture.told import Told, faults_of, told
+
+
+@dataclass(slots=True)
+class Found:
+    """What was found wrong, each once: by what it is, in words."""
+
+    lost: dict[str, str] = field(default_factory=dict)
+    doubled: dict[str, str] = field(default_factory=dict)
+    wrong_prefix: dict[str, str] = field(default_factory=dict)
+    other: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def count(self) -> int:
+        return sum(map(len, (self.lost, self.doubled, self.wrong_prefix, self.other)))
+
+    def last_line(self, kills: int) -> str:
+        lost, doubled, wrong = len(self.lost), len(self.doubled), len(self.wrong_prefix)
+        return f"kills {kills}, lost {lost}, doubled {doubled}, wrong prefix {wrong}"
+
+
+class Checks:
+    """Compares what lies in the state folder with the pictures that were dropped and with the ink."""
+
+    def __init__(self, daemon: Daemon, machine: Machine) -> None:
+        self._daemon, self._machine = daemon, machine
+        self._dropped: dict[str, str] = {}
+        self._programs: dict[str, list[Line]] = {}
+        self._known: list[Inked | None] = []
+        self.found = Found()
+        self.cancelled: set[str] = set()
+
+    def dropped(self, picture: Path, name: str) -> None:
+        """A picture is about to be put into the inbox under this name."""
+        self._dropped[_hash(picture)] = name
+
+    def all(self) -> None:
+        """Look at everything. The daemon may be at work meanwhile: only what is over is judged."""
+        jobs = told(self._daemon.journal)
+        # What is certain is on the sheet later; what is there is promised later still.
+        self._check_ink(jobs, self._machine.sheet())
+        self._check_promises(told(self._daemon.journal))
+        self._check_pictures(jobs)
+        for wrong in faults_of(self._daemon.journal):
+            self.found.other[wrong] = wrong
+
+    def at_the_end(self) -> None:
+        """Nothing is under way any more: every job is over, and none has ended before its first ink by our doing."""
+        jobs = told(self._daemon.journal)
+        inked = {known.job for known in self._known if known}
+        for job in jobs.values():
+            if not job.over:
+                self.found.lost[job.id] = f"job {job.id} is still {job.state.value}: {job.words}"
+            elif job.state is State.FAILED and job.id not in inked:
+                self.found.lost[job.id] = f"job {job.id} failed before its first ink: {job.words}"
+            elif job.state is State.CANCELLED and job.id not in self.cancelled:
+                self.found.lost[job.id] = f"job {job.id} was cancelled by nobody: {job.words}"
+
+    def _check_pictures(self, jobs: dict[str, Told]) -> None:
+        """Every dropped picture is a job or lies in the inbox, once. Looked at twice: it may just be on its way."""
+        wrong = self._wrong_pictures()
+        if wrong:
+            wrong = {key: words for key, words in self._wrong_pictures().items() if key in wrong}
+        for (kind, name), words in wrong.items():
+            getattr(self.found, kind)[name] = words
+        for job in jobs.values():
+            if source_of(self._daemon.jobs / job.id) is None:
+                self.found.lost[job.id] = f"job {job.id} has no picture in its folder"
+
+    def _wrong_pictures(self) -> dict[tuple[str, str], str]:
+        here = [path for path in self._daemon.inbox.iterdir() if path.is_file()]
+        here += [path for folder in self._daemon.jobs.iterdir() if (path := source_of(folder))]
+        copies = Counter(_hash(path) for path in here)
+        wrong = {}
+        for key, name in self._dropped.items():
+            if copies[key] == 0:
+                wrong["lost", name] = f"the picture {name} is nowhere"
+            elif copies[key] > 1:
+                wrong["doubled", name] = f"the picture {name} is there {copies[key]} times"
+        return wrong
+
+    def _check_ink(self, jobs: dict[str, Told], sheet: Sheet) -> None:
+        programs = {job.id: self._program(job.id) for job in jobs.values() if State.DRAWING in job.states}
+        self._identify(sheet.lines, programs)
+        inked = Counter((known.job, known.stroke) for known in self._known if known)
+        for (job, stroke), times in inked.items():
+            if times > 1:
+                self.found.doubled[f"{job} {stroke}"] = f"stroke {stroke} of job {job} was inked {times} times"
+        for number, known in enumerate(self._known):
+            if known is None:
+                self.found.wrong_prefix[f"line {number}"] = f"line {number} of the ink is of no stroke of any job"
+        for job in jobs.values():
+            if job.over:
+                self._check_words(job)
+            if missing := set(range(job.certain)) - self._strokes(job, whole=True):
+                self._wrong(job, f"strokes {sorted(missing)}, certain in the journal, are not there whole")
+
+    def _check_promises(self, jobs: dict[str, Told]) -> None:
+        """No stroke was touched before the journal said that it may be."""
+        for job in jobs.values():
+            if beyond := {stroke for stroke in self._strokes(job) if stroke >= job.possible}:
+                self._wrong(job, f"strokes {sorted(beyond)} were touched without a word in the journal")
+
+    def _identify(self, lines: list[Line], programs: dict[str, list[Line]]) -> None:
+        """The last line may have grown since, every other one is known once and for ever."""
+        recent = dict(list(programs.items())[-6:])
+        for line in lines[max(0, len(self._known) - 1) :]:
+            found = whose(line, recent) or whose(line, programs)
+            if len(self._known) > 0 and line is lines[len(self._known) - 1]:
+                self._known[-1] = found
+            else:
+                self._known.append(found)
+
+    def _strokes(self, job: Told, *, whole: bool = False) -> set[int]:
+        """Those of this job that are on the sheet, all or the whole ones."""
+        inked = (known for known in self._known if known and known.job == job.id)
+        return {known.stroke for known in inked if known.whole or not whole}
+
+    def _check_words(self, job: Told) -> None:
+        touched = self._strokes(job)
+        if job.said is None:
+            if touched:
+                self._wrong(job, f"strokes {sorted(touched)} are touched")
+            return
+        certain, possible = job.said
+        if missing := set(range(certain)) - self._strokes(job, whole=True):
+            self._wrong(job, f"strokes {sorted(missing)} are not there whole")
+        if beyond := {stroke for stroke in touched if stroke >= possible}:
+            self._wrong(job, f"strokes {sorted(beyond)} are touched")
+
+    def _wrong(self, job: Told, but: str) -> None:
+        self.found.wrong_prefix[job.id] = f"job {job.id} says '{job.words}', but {but}"
+
+    def _program(self, job: str) -> list[Line]:
+        """Of a job that is or was drawn: its program no longer changes."""
+        if job not in self._programs:
+            try:
+                self._programs[job] = strokes_of(self._daemon.jobs / job / "program.gcode")
+            except LinedrawError as error:
+                self.found.other[job] = f"job {job} was drawn without a program that can be read: {error}"
+                return []
+        return self._programs[job]
+
+
+def _hash(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except FileNotFoundError:
+        return ""  # It has just been claimed.
