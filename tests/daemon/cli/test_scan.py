@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -88,6 +89,25 @@ def test_an_end_of_the_daemon_breaks_the_scan_off(tmp_path: Path, monkeypatch: p
     assert fake.calls[-1] == "died"
     assert "broken off, because linedrawd ends" in daemon.log()
     assert list(daemon.settings.paths.inbox.iterdir()) == []
+    fake.scanner.close()
+
+
+def test_the_daemon_hears_other_orders_while_it_scans(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fake, refused = fake_on_path(tmp_path, {"pages": 0, "then": "hang"}, monkeypatch=monkeypatch), list[str]()
+    with running(settings_of("[scanner]\ndevice = 'fake:0'", tmp_path)) as daemon:
+
+        def scan() -> None:
+            try:
+                daemon.order("scan")
+            except LinedrawError as error:
+                refused.append(str(error))
+
+        asking = Thread(target=scan)
+        asking.start()
+        fake.wait_for_call("hangs")
+        assert daemon.order("ping") == "linedrawd runs"
+    asking.join(20)
+    assert "broken off, because linedrawd ends" in refused[0]
     fake.scanner.close()
 
 

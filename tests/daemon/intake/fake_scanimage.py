@@ -28,8 +28,8 @@ def turn() -> dict[str, object]:
     return turns[min(number, len(turns) - 1)]
 
 
-def interrupted(*_: object) -> None:
-    note("died")
+def interrupted(number: int, _: object) -> None:
+    note("died" if number == signal.SIGINT else "died without stopping the scanner")
     sys.exit(2)
 
 
