@@ -37,7 +37,7 @@ class Ahead:
         """How many strokes are promised from now on."""
         now = self._now()
         if now - self._at_s < _SOON_S:
-            self._more = 2 * self._more + 1
+            self._more = 4 * self._more + 3
         elif now - self._at_s > _LATE_S:
             self._more //= 2
         possible = min(self._strokes, max(touched + self._more, self._soon(touched)))

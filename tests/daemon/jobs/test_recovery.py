@@ -149,6 +149,14 @@ def test_where_nobody_knows_the_times_promises_grow_until_they_are_seldom() -> N
     assert clocked.most_in_a_second(after_s=3.0) <= 2
 
 
+def test_what_fills_the_buffers_at_the_start_is_two_promises() -> None:
+    clocked = Clocked(40, stroke_s=8.0)
+    promised = 0
+    for stroke in range(1, 6):
+        promised = clocked.ahead(stroke, 0) if stroke > promised else promised
+    assert len(clocked.written[1:]) == 2
+
+
 def test_long_strokes_are_promised_one_by_one() -> None:
     clocked = Clocked(5, stroke_s=8.0)
     clocked.draw()
