@@ -43,7 +43,7 @@ def test_the_unit_waits_for_ready_and_starts_again_what_can_get_better() -> None
     assert {key: value(key) for key in keys} == {
         "Type": "notify",
         "NotifyAccess": "main",
-        "ExecReload": "/bin/kill -HUP $MAINPID",
+        "ExecReload": '/bin/sh -c "kill -HUP ${MAINPID}"',
         "Restart": "on-failure",
         "RestartPreventExitStatus": "2",
         "OOMPolicy": "continue",
