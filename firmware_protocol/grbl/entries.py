@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from firmware_protocol.grbl import sentences
 from firmware_protocol.grbl.flow import BARRIER, Flow
-from firmware_protocol.grbl.habits import HOLD, RESET
+from firmware_protocol.grbl.habits import ASK, HOLD, RESET
 from firmware_protocol.grbl.preparation import CHECK_MODE
 from firmware_protocol.grbl.states import Signal, State
 from firmware_protocol.session import NotReady, Ready, Verdict, Waiting
@@ -60,8 +60,12 @@ def _homing(talk: Conversation, cause: Cause) -> None:
 
 
 def _placing(talk: Conversation, cause: Cause) -> None:
-    talk.controller.place_mm = None  # until a report tells it in the new coordinates
     talk.flow = Flow((*[MOTORS_ON] * (cause.before is State.RESTED), talk.places), room_bytes=None)
+
+
+def _locating(talk: Conversation, _: Cause) -> None:
+    talk.controller.place_mm = None  # what was reported before was counted from elsewhere
+    talk.urgent += ASK
 
 
 def _setting(talk: Conversation, _: Cause) -> None:
@@ -85,8 +89,6 @@ def _streaming(talk: Conversation, _: Cause) -> None:
 
 
 def _ready(talk: Conversation, cause: Cause) -> None:
-    if cause.before is State.HOMING:
-        talk.controller.place_mm = None  # what was reported before was counted from elsewhere
     if talk.job is None:
         talk.events.append(Ready(talk.controller.firmware or "", talk.controller.buffer_bytes))
         return
@@ -157,6 +159,7 @@ ENTER: dict[State, Callable[[Conversation, Cause], None]] = {
     State.READING: _reading,
     State.HOMING: _homing,
     State.PLACING: _placing,
+    State.LOCATING: _locating,
     State.READY: _ready,
     State.SETTING: _setting,
     State.TRYING: _trying,

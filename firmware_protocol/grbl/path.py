@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 from firmware_protocol.grbl.moves import Arc, Move, Straight
@@ -203,14 +204,18 @@ def _axis(value: float | None, old: float | None, unit_mm: float, *, relative: b
 
 
 def extent_mm(path: Path) -> tuple[Triple, Triple] | None:
-    """The lowest and the highest place of all moves whose place is known; None when there is none."""
+    """The lowest and the highest place of all moves whose place is known; None when there is none.
+
+    Where the pen stands before the first of them counts on an axis only if no move leads away from there.
+    """
     places = [place for step in path.steps if step.move for place in step.move.corners]
     places += [step.after.at for step in path.steps if step.astray and step.after.at]
     if not places:
         return None
-    return _bound(min, places), _bound(max, places)
+    x, y, z = (_reached([place[axis] for place in places]) for axis in range(3))
+    return (x[0], y[0], z[0]), (x[1], y[1], z[1])
 
 
-def _bound(choose: Callable[[Iterable[float]], float], places: list[Triple]) -> Triple:
-    x, y, z = (choose(place[axis] for place in places) for axis in range(3))
-    return x, y, z
+def _reached(along: list[float]) -> tuple[float, float]:
+    led_to = list(itertools.dropwhile(lambda value: value == along[0], along)) or along
+    return min(led_to), max(led_to)

@@ -139,4 +139,5 @@ _ON_REPORT: dict[State, Callable[[Conversation, StatusReport], None]] = {
     State.HOLDING: _held,
     State.RESTARTED: _held,
     State.ASKING: _asked,
+    State.LOCATING: _asked,
 }

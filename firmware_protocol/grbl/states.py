@@ -13,6 +13,7 @@ class State(Enum):
     READING = "reading version and settings"
     HOMING = "homing"
     PLACING = "storing where the origin lies"
+    LOCATING = "asking where the pen is now"
     READY = "ready"
     SETTING = "writing settings"
     TRYING = "trying the program in check mode"
@@ -136,10 +137,13 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     (State.HOMING, Signal.BANNER): State.LOST,
     (State.HOMING, Signal.ALARM): State.LOST,
     (State.HOMING, Signal.REFUSED): State.LOST,
-    (State.HOMING, Signal.COMPLETE): State.READY,
+    (State.HOMING, Signal.COMPLETE): State.LOCATING,
     (State.PLACING, Signal.BANNER): State.LOST,
     (State.PLACING, Signal.REFUSED): State.LOST,
-    (State.PLACING, Signal.COMPLETE): State.READY,
+    (State.PLACING, Signal.COMPLETE): State.LOCATING,
+    (State.LOCATING, Signal.STILL): State.READY,
+    (State.LOCATING, Signal.BANNER): State.LOST,
+    (State.LOCATING, Signal.ALARM): State.LOST,
     # Between jobs.
     (State.READY, Signal.BANNER): State.LOST,
     (State.READY, Signal.ALARM): State.LOST,

@@ -85,4 +85,4 @@ def test_what_a_program_needs_is_read_from_its_lines() -> None:
     lines = ["G21 G90", "M3 S30", "G0 X10 Y0", "M3 S90", "G1 X20 F600", "G2 X30 Y0 I5 J0", "M5", "S5"]
     needs = needs_of(Path(lines, Modal(place=(0.0, 0.0, 0.0)), steps_mm=(250.0, 250.0, 250.0)))
     assert needs.speeds == SERVO
-    assert needs.extent_mm == ((0.0, 0.0, 0.0), (30.0, 5.0, 0.0))
+    assert needs.extent_mm == ((10.0, 0.0, 0.0), (30.0, 5.0, 0.0))

@@ -36,8 +36,9 @@ def test_homing_leads_no_pen_off_the_path_of_a_job_that_begins_at_once() -> None
     play.say(*INFO)
     play.say(*SETTINGS)
     play.say("ok")
-    play.start(Line("G21 G90"), Line("G0 Z-4"), Line("G0 X-77 Y-88", 0), Line("G1 Z-8 F900", 0))
     home = "<Idle|MPos:-99.000,-99.000,-1.000|FS:0,0>"
+    play.say(home)
+    play.start(Line("G21 G90"), Line("G0 Z-4"), Line("G0 X-77 Y-88", 0), Line("G1 Z-8 F900", 0))
     for _ in range(4):
         assert b"!" not in play.say(home)
         play.wait(0.3)
