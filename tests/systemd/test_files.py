@@ -33,8 +33,7 @@ def here(tmp_path: Path, *, drop_ins: bool = True) -> Path:
 
 
 def run(*command: str | Path) -> subprocess.CompletedProcess[str]:
-    if shutil.which(str(command[0])) is None:
-        pytest.skip(f"{command[0]} is not installed")
+    assert shutil.which(str(command[0])), f"{command[0]} is not installed: apt-get install systemd logrotate"
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
