@@ -27,7 +27,7 @@ from daemon.config import Options, Settings, load_settings
 from daemon.errors import LinedrawError
 from daemon.intake.decode import decode
 from daemon.jobs.folder import source_of
-from daemon.jobs.states import ALLOWED, State
+from daemon.jobs.states import OVER, State
 from daemon.report import canvas
 from daemon.report.contact_sheet import Row, contact_sheet
 from daemon.report.preview import in_words
@@ -36,7 +36,6 @@ from daemon.toolpath.place import invert, place
 
 DRAWINGS = Path(__file__).parent / "drawings"
 KINDS = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".pbm", ".pgm", ".ppm"}
-OVER = {state for state, following in ALLOWED.items() if following <= {State.CANCELLED}}
 LOOK_EVERY_S = 0.25
 
 

@@ -16,7 +16,7 @@ from daemon.report.fidelity import Fidelity
 from daemon.report.report import executed_report, planned_report, to_json
 from daemon.shapes import LineGraph, PageImage, Stroke, Toolpath
 from daemon.toolpath.place import Layout, placement
-from tests.demo import DRAWINGS, OVER, Seen, drop, line_of, main, row_of, seen_jobs
+from tests.demo import DRAWINGS, Seen, drop, line_of, main, row_of, seen_jobs
 
 LINE = np.array([[10.0, 20.0], [110.0, 20.0]])
 
@@ -47,10 +47,6 @@ def drawn_job(settings: Settings) -> Seen:
     )
     (folder / "report.json").write_text(to_json(executed_report(planned, figures, real_s=83.0)))
     return Seen(folder.name, "line.png", State.DONE, "")
-
-
-def test_a_job_is_over_when_nothing_but_cancelling_can_follow() -> None:
-    assert {State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED} == OVER
 
 
 def test_jobs_are_read_while_the_journal_is_open(tmp_path: Path) -> None:

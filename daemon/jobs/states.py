@@ -52,6 +52,9 @@ ALLOWED: dict[State, frozenset[State]] = {
 }
 """From each state to the ones that may follow."""
 
+OVER = frozenset({State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED})
+"""Here a job stays until a person says otherwise."""
+
 
 @dataclass(frozen=True, slots=True)
 class Meaning:

@@ -11,9 +11,10 @@ import cv2
 import numpy as np
 
 from daemon.config import Options, load_settings
+from daemon.jobs.states import OVER
 from daemon.shapes import Grey
 from tests.benchmarks.pages import SIDES_PX, page, sketch
-from tests.demo import OVER, daemon, drop, seen_jobs
+from tests.demo import daemon, drop, seen_jobs
 
 _GIVE_UP_S = 300.0
 _PHOTO_PX = 3200

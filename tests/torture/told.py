@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from daemon.jobs.states import ALLOWED, State
+from daemon.jobs.states import ALLOWED, OVER, State
 
 _FIGURES = re.compile(
     r"of \d+ strokes (\d+) are certainly drawn, none (?:after the first|from) (\d+)(?: on)? is touched"
 )
-_OVER = {State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED}
 _STATES = {state.value for state in State}
 _ALL = re.compile(r"all (\d+) strokes are drawn")
 
@@ -36,7 +35,7 @@ class Told:
     @property
     def over(self) -> bool:
         """No ink comes any more, unless a person wants it."""
-        return self.state in _OVER
+        return self.state in OVER
 
     @property
     def said(self) -> tuple[int, int] | None:

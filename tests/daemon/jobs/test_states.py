@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from daemon.jobs.states import ALLOWED, State, check_step
+from daemon.jobs.states import ALLOWED, OVER, State, check_step
 
 
 def test_every_state_stands_in_the_table() -> None:
@@ -26,7 +26,7 @@ def test_a_job_goes_through_its_states_in_order() -> None:
         check_step(before, after)
 
 
-@pytest.mark.parametrize("end", [State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED])
+@pytest.mark.parametrize("end", sorted(OVER, key=lambda state: state.value))
 def test_a_job_that_has_ended_is_never_drawn_again(end: State) -> None:
     assert State.DRAWING not in ALLOWED[end]
     with pytest.raises(ValueError, match=f"from {end.value} to drawing"):
