@@ -164,7 +164,9 @@ def order(results: dict[str, Any]) -> str:
     lines = []
     for norm, said in ((False, "As in the paper"), (True, "With BatchNorm")):
         ours = {e: results[key_of(e, norm)]["test"]["test_mean"] for e in TABLE if key_of(e, norm) in results}
-        pairs = [(a, b) for a, b in itertools.combinations(ours, 2)]
+        pairs = list(itertools.combinations(ours, 2))
+        if not pairs:
+            continue
         other = [(a, b) for a, b in pairs if (a.paper_iou > b.paper_iou) != (ours[a] > ours[b])]
         against = [
             f"{key_of(a, False)} ({ours[a]:.2f}) and {key_of(b, False)} ({ours[b]:.2f})"
