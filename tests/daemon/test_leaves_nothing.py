@@ -20,7 +20,7 @@ def run_until_drawn(state_dir: Path, *, home: Path, temporary: Path, here: Path)
     command = [sys.executable, "-m", "daemon.cli", "--device", "sim", "-v", "--state-dir", str(state_dir)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=here, env=environment) as process:
         assert process.stderr is not None
-        said = next((line for line in process.stderr if "state=done" in line or " INFO " not in line), "nothing")
+        said = next((line for line in process.stderr if "state=done" in line or " ERROR " in line), "nothing")
         process.terminate()
         process.stderr.read()
     assert process.returncode == 0
@@ -37,10 +37,10 @@ def test_a_run_leaves_no_file_outside_its_folders(tmp_path: Path) -> None:
     assert [path for folder in (home, temporary, here) for path in folder.rglob("*")] == []
     left = {path.relative_to(state_dir).as_posix() for path in state_dir.rglob("*")}
     assert {path for path in left if not path.startswith("jobs/000001-star/")} == {
-        "inbox", "jobs", "jobs/000001-star", "journal.sqlite", "lock", "log", "log/linedrawd.log", "run",
-        "run/status.json",
+        "inbox", "jobs", "jobs/000001-star", "journal.sqlite", "lock", "log", "log/linedrawd.log", "pen.json",
+        "run", "run/status.json",
     }  # fmt: skip
     assert {path.rpartition("/")[2] for path in left if path.startswith("jobs/000001-star/")} == {
         "source.png", "strokes.json", "drawing.svg", "program.gcode", "preview.png", "explain.png", "report.json",
-        "job.log", "ink.json",
+        "arrival.json", "job.json", "job.log", "ink.json",
     }  # fmt: skip

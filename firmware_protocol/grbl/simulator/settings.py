@@ -76,9 +76,13 @@ def fixed(value: float, decimals: int) -> str:
     return f"{sign}{whole}.{part:0{decimals}d}"
 
 
+_LARGEST = 3.4028234663852886e38
+"""Of the chip's numbers, which have 32 bits."""
+
+
 def float_bytes(values: tuple[float, ...]) -> bytes:
-    """What the chip's memory holds for these numbers."""
-    return struct.pack(f"<{len(values)}f", *values)
+    """What the chip's memory holds for these numbers; those that are too large for it end at the largest."""
+    return struct.pack(f"<{len(values)}f", *(max(-_LARGEST, min(_LARGEST, value)) for value in values))
 
 
 def differing(old: bytes, new: bytes) -> int:

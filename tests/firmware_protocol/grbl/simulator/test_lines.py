@@ -128,6 +128,13 @@ def test_offsets_are_kept_through_a_reset_and_g92_is_not() -> None:
     assert {"[G54:3.000,0.000,0.000]", "[G92:0.000,0.000,0.000]"} <= set(conversation.ask("$#\n"))
 
 
+def test_a_number_beyond_the_chips_largest_is_kept_as_that() -> None:
+    """Forty digits: the chip's floats end at 3.4e38, and its memory holds no more."""
+    conversation = talk()
+    assert conversation.ask("G10L2P1X" + "5" * 40 + "\n") == ["ok"]
+    assert conversation.ask("?")[0].startswith("<")
+
+
 def test_a_jog_moves_and_leaves_the_modal_state_alone() -> None:
     conversation = talk()
     assert conversation.ask("$J=G91G20X0.1F50\n", within_s=1.0) == ["ok"]
