@@ -23,6 +23,7 @@ class Leg:
         self, parts: Sequence[Part], start: Modal, *, lift: Sequence[str], controller: Controller, counting: bool
     ) -> None:
         self.parts = list(parts)
+        self._touched = _touched_by(self.parts)
         self.tail = [Part(text) for text in (*lift, BARRIER)]
         self.held_at: Triple | None = None
         self.held = False
@@ -93,10 +94,7 @@ class Leg:
 
     def touched(self, lines: int) -> int:
         """No stroke from this number on has a part among the first `lines` of the flow."""
-        for line in range(min(lines, len(self.parts)) - 1, -1, -1):
-            if (stroke := self.parts[line].stroke) is not None:
-                return stroke + 1
-        return next((part.stroke for part in self.parts if part.stroke is not None), 0)
+        return self._touched[min(lines, len(self.parts))]
 
     # -- how it is cut --
 
@@ -162,3 +160,11 @@ class Leg:
         if not self.held or self._doubted is not None:
             return self.flow.sent
         return min(self.flow.answered + 1, self.flow.sent)
+
+
+def _touched_by(parts: Sequence[Part]) -> list[int]:
+    """For each number of parts, from none on: the stroke from which on none of them belongs to any."""
+    before = [next((part.stroke for part in parts if part.stroke is not None), 0)]
+    for part in parts:
+        before.append(before[-1] if part.stroke is None else part.stroke + 1)
+    return before
