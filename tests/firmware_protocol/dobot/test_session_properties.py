@@ -97,9 +97,7 @@ def test_whatever_the_wire_does_finished_means_whole_and_the_truth_lies_within(f
     check_truth(faults)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="known fault: a command that never came is taken for queued"
-)
+@pytest.mark.xfail(strict=True, reason="known fault: a command that never came is taken for queued")
 def test_three_lost_frames_and_a_late_one_do_not_hide_a_command_that_never_came() -> None:
     check_truth([DropReply(0, False), DropReply(0, False), CorruptRequest(12), DelayReply(10, False, 0.404581714)])
 
