@@ -11,40 +11,19 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from daemon.durable import PART, sync_folder, whole_file
 from daemon.errors import DiskTrouble
 
 CLAIMED = ".claimed-"
 """A picture of an inbox on another file system, while it is being copied: `.claimed-JOB`."""
-_PART = ".part"
 
 
 def write_durably(path: Path, data: bytes) -> None:
     """Replace the file by `data`, whole or not at all. Raises DiskTrouble."""
     with _disk_trouble(path):
-        _write_beside(path, data)
-        sync_folder(path.parent)
-
-
-def _write_beside(path: Path, data: bytes) -> None:
-    part = path.with_name(path.name + _PART)
-    try:
-        with part.open("wb") as file:
+        with whole_file(path) as file:
             file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        part.rename(path)
-    except OSError:
-        part.unlink(missing_ok=True)
-        raise
-
-
-def sync_folder(folder: Path) -> None:
-    """What was renamed in this folder stays renamed after a power cut."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+        sync_folder(path.parent)
 
 
 def make_folder(folder: Path) -> Path:
@@ -56,7 +35,7 @@ def make_folder(folder: Path) -> Path:
 
 def source_of(folder: Path) -> Path | None:
     """The picture of a job, None where it has not arrived."""
-    return next((path for path in folder.glob("source*") if path.suffix != _PART), None)
+    return next((path for path in folder.glob("source*") if path.suffix != PART), None)
 
 
 class JobFolders:
@@ -127,7 +106,8 @@ class JobFolders:
             folder = self._make(picture.stem)
             try:
                 for name, data in beside.items():
-                    _write_beside(folder / name, data)
+                    with whole_file(folder / name) as file:
+                        file.write(data)
                 yield folder
                 sync_folder(folder)
                 sync_folder(self.root)
@@ -160,21 +140,13 @@ def _take_from_elsewhere(picture: Path, folder: Path) -> None:
 
 
 def _copy_durably(picture: Path, copy: Path) -> None:
-    part = copy.with_name(copy.name + _PART)
-    try:
-        with picture.open("rb") as given, part.open("wb") as file:
-            shutil.copyfileobj(given, file, 1 << 20)
-            file.flush()
-            os.fsync(file.fileno())
-        part.rename(copy)
-    except OSError:
-        part.unlink(missing_ok=True)
-        raise
+    with picture.open("rb") as given, whole_file(copy) as file:
+        shutil.copyfileobj(given, file, 1 << 20)
 
 
 def _source_name(picture: Path) -> str:
     suffix = picture.suffix.lower()
-    return "source" + (suffix if re.fullmatch(r"\.[a-z0-9]{1,8}", suffix) and suffix != _PART else "")
+    return "source" + (suffix if re.fullmatch(r"\.[a-z0-9]{1,8}", suffix) and suffix != PART else "")
 
 
 def _slug(stem: str) -> str:

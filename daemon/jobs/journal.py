@@ -11,8 +11,8 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from daemon.durable import sync_folder
 from daemon.errors import DiskTrouble
-from daemon.jobs.folder import sync_folder
 from daemon.jobs.states import State, check_step
 
 VERSION = 2

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from daemon.durable import sync_folder, whole_file
 from daemon.errors import MachineFault, NoMachine
 from daemon.shapes import Program
 from firmware_protocol.emco.conversation import SETTLE_S
@@ -20,8 +21,6 @@ from firmware_protocol.session import Ended, Event, Ready, Sent, Verdict
 
 LINE_END = "\r\n"
 """The control's PC runs Windows; both controls take CR LF for the end of a block."""
-
-_PART = ".part"
 
 
 class FileDrop:
@@ -152,20 +151,7 @@ def _holds_another(file: Path, data: bytes) -> bool:
 
 def _write_whole(file: Path, data: bytes) -> None:
     """Replace the file by `data`: a control never sees a part of it. Raises OSError."""
-    part = file.with_name(file.name + _PART)
-    try:
-        with part.open("wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        part.rename(file)
-    except OSError:
-        with contextlib.suppress(OSError):
-            part.unlink()
-        raise
+    with whole_file(file) as stream:
+        stream.write(data)
     with contextlib.suppress(OSError):  # Not every network share can do this.
-        folder = os.open(file.parent, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
+        sync_folder(file.parent)
