@@ -177,7 +177,7 @@ def print_corners(pictures: Sequence[Path], label_of: Callable[[NDArray[np.float
     """Components of the corners channel of each picture and the largest one's pixels at 3 px line width."""
     print(f"{'picture':24} {'line px':>8} {'corners':>8} {'largest px':>11}")
     for picture in pictures:
-        found = corners_of(picture, label_of, load_manifest().tile_px)
+        found = corners_of(picture, label_of)
         print(f"{found.name:24} {found.line_width_px:8.2f} {found.components:8} {found.largest_px:11.0f}")
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,19 +75,7 @@ class Segmenter:
 
     def segment(self, page: PageImage) -> Segmentation:
         """Three maps of the page's shape, float32 in 0..1, that sum to 1 everywhere."""
-        height, width = page.grey.shape
-        grey = soft_edged(page.grey)
-        maps = np.zeros((3, height, width), np.float32)
-        maps[0] = 1.0
-        size_px = self._manifest.window_px(max(width, height))
-        inked = list(tiles(grey < 255 - _BLANK, size_px=size_px, margin_px=MARGIN_PX))
-        for first in range(0, len(inked), BATCH):
-            batch = inked[first : first + BATCH]
-            last = first + BATCH >= len(inked)
-            answers = softmax(self.logits(np.stack([cut(grey, t, size_px) for t in batch]), last=last))
-            for tile, answer in zip(batch, answers, strict=True):
-                paste(maps, tile, answer)
-        return Segmentation(*maps)
+        return through_windows(page, self._manifest, lambda ink, last: softmax(self.logits(ink, last=last)))
 
     def logits(self, ink: NDArray[np.float32], *, last: bool = True) -> NDArray[np.float32]:
         """ink float32 (N, H, W) in 0..1, H and W legal sizes -> float32 (N, 3, H, W).
@@ -98,6 +87,24 @@ class Segmenter:
             options.add_run_config_entry("memory.enable_memory_arena_shrinkage", "cpu:0")
         answer: NDArray[np.float32] = self._session.run(None, {"ink": ink[:, None]}, options)[0]
         return answer
+
+
+def through_windows(
+    page: PageImage, manifest: Manifest, shares_of: Callable[[NDArray[np.float32], bool], NDArray[np.float32]]
+) -> Segmentation:
+    """A page read window by window. shares_of: ink (N, S, S) and whether it is the page's last, to (N, 3, S, S)."""
+    height, width = page.grey.shape
+    grey = soft_edged(page.grey)
+    maps = np.zeros((3, height, width), np.float32)
+    maps[0] = 1.0
+    size_px = manifest.window_px(max(width, height))
+    inked = list(tiles(grey < 255 - _BLANK, size_px=size_px, margin_px=MARGIN_PX))
+    for first in range(0, len(inked), BATCH):
+        batch = inked[first : first + BATCH]
+        shares = shares_of(np.stack([cut(grey, t, size_px) for t in batch]), first + BATCH >= len(inked))
+        for tile, share in zip(batch, shares, strict=True):
+            paste(maps, tile, share)
+    return Segmentation(*maps)
 
 
 def checked_file(manifest: Manifest) -> Path:
