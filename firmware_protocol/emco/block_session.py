@@ -8,11 +8,12 @@ from firmware_protocol.emco import sentences
 from firmware_protocol.emco.answers import Answer, AnswerReader
 from firmware_protocol.emco.conversation import UNKNOWN, Control, Conversation
 from firmware_protocol.emco.job import Times
-from firmware_protocol.emco.states import SENDING, Signal, State
+from firmware_protocol.emco.states import SENDING, Signal
+from firmware_protocol.emco.transfer import Transfer
 from firmware_protocol.session import Accepted, Event, JobLine
 
 
-class BlockSession:
+class BlockSession(Transfer):
     """`firmware_protocol.session.Session` for controls and DNC boxes that acknowledge each block; also over TCP.
 
     ack, nak: the answers, as bytes anywhere in the stream or, where they are text such as `ok`, as a line of their
@@ -37,18 +38,13 @@ class BlockSession:
     ) -> None:
         """Raises LocalProtocolError for lines that cannot be sent, ValueError for answers that cannot be told apart."""
         name = "control without a name (acknowledged blocks)"
-        self._talk = Conversation(control, now=now, times=times, name=name)
+        super().__init__(Conversation(control, now=now, times=times, name=name), most_bytes=1)
         self._reader = AnswerReader(ack=ack, nak=nak)
         self._answer_within_s, self._retries, self._holds_blocks = answer_within_s, retries, control.holds_blocks
         self._owed = self._again = False
         """A block is unanswered; it is to be sent again."""
         self._refusals = 0
         self._late_at = float("inf")
-
-    @property
-    def state(self) -> State:
-        """Where the conversation stands."""
-        return self._talk.state
 
     def receive(self, data: bytes, now: float) -> list[Event]:
         """See `Session.receive`. Never raises: what is no answer is kept for the sentence of an error."""
@@ -95,28 +91,6 @@ class BlockSession:
         self._refusals = 0
         self._talk.go(Signal.GO)
         self._finish_if_empty()
-
-    def stop(self, now: float) -> None:
-        """See `Session.stop`; what the control already holds is drawn all the same."""
-        self._talk.now = now
-        self._talk.stop()
-
-    def unplugged(self, now: float) -> list[Event]:
-        """See `Session.unplugged`."""
-        self._talk.now = now
-        self._talk.go(Signal.UNPLUG, sentences.UNPLUGGED)
-        return self._talk.told()
-
-    @property
-    def strokes_touched(self) -> int:
-        """See `Session.strokes_touched`."""
-        job = self._talk.job
-        return 0 if job is None else job.touched(most=1)
-
-    @property
-    def strokes_certain(self) -> int:
-        """See `Session.strokes_certain`."""
-        return 0 if self._talk.job is None else self._talk.job.certain
 
     def _answered(self, answer: Answer) -> None:
         if self._talk.state not in SENDING or not self._owed or self._again:

@@ -10,6 +10,7 @@ from firmware_protocol.emco.conversation import UNKNOWN, Control, Conversation
 from firmware_protocol.emco.job import Times
 from firmware_protocol.emco.line_format import lower_seven, with_even_parity
 from firmware_protocol.emco.states import SENDING, Signal, State
+from firmware_protocol.emco.transfer import Transfer
 from firmware_protocol.session import Event, JobLine
 
 __all__ = ["XOFF", "XON", "BlockSession", "Control", "XonXoffSession"]
@@ -21,7 +22,7 @@ _IN_FLIGHT_CHUNKS = 2
 """What may be on the wire when a character of the control is heard."""
 
 
-class XonXoffSession:
+class XonXoffSession(Transfer):
     """`firmware_protocol.session.Session` for a control that reads a serial line and says nothing but XON and XOFF.
 
     bytes_per_s: of the line, see `line_format`; never more than chunk_bytes are written at once, and no faster, so
@@ -51,19 +52,14 @@ class XonXoffSession:
         if bytes_per_s <= 0 or chunk_bytes < 1:
             raise ValueError(f"bytes_per_s = {bytes_per_s} and chunk_bytes = {chunk_bytes} must be above 0")
         name = "control without a name (XON/XOFF)"
-        self._talk = Conversation(control, now=now, times=times, name=name)
-        self._bytes_per_s, self._chunk_bytes = bytes_per_s, chunk_bytes
+        super().__init__(Conversation(control, now=now, times=times, name=name), most_bytes=chunk_bytes)
+        self._bytes_per_s = bytes_per_s
         self._wait_for_xon, self._xoff_limit_s = wait_for_xon, xoff_limit_s
         self._seven_bit, self._holds_bytes = seven_bit, control.holds_bytes
         self._asked_for = False
         """An XON came between jobs: somebody has pressed START."""
         self._free_at = now
         """When all that was written has left the wire."""
-
-    @property
-    def state(self) -> State:
-        """Where the conversation stands."""
-        return self._talk.state
 
     def receive(self, data: bytes, now: float) -> list[Event]:
         """See `Session.receive`. Never raises: what is neither XON nor XOFF is passed over."""
@@ -104,7 +100,7 @@ class XonXoffSession:
         talk.now = now
         if talk.state not in SENDING or talk.job is None or now < self._free_at:
             return b""
-        data = talk.job.take(self._chunk_bytes)
+        data = talk.job.take(self._most_bytes)
         self._free_at = now + len(data) / self._bytes_per_s
         talk.job.arrived(self._free_at)
         return with_even_parity(data) if self._seven_bit else data
@@ -119,28 +115,6 @@ class XonXoffSession:
         else:
             talk.wait_for_a_person()
         self._asked_for = False
-
-    def stop(self, now: float) -> None:
-        """See `Session.stop`; what the control already holds is drawn all the same."""
-        self._talk.now = now
-        self._talk.stop()
-
-    def unplugged(self, now: float) -> list[Event]:
-        """See `Session.unplugged`."""
-        self._talk.now = now
-        self._talk.go(Signal.UNPLUG, sentences.UNPLUGGED)
-        return self._talk.told()
-
-    @property
-    def strokes_touched(self) -> int:
-        """See `Session.strokes_touched`."""
-        job = self._talk.job
-        return 0 if job is None else job.touched(most=self._chunk_bytes)
-
-    @property
-    def strokes_certain(self) -> int:
-        """See `Session.strokes_certain`."""
-        return 0 if self._talk.job is None else self._talk.job.certain
 
     def _heard(self, signal: Signal) -> None:
         talk = self._talk
@@ -160,4 +134,4 @@ class XonXoffSession:
 
     @property
     def _in_flight_bytes(self) -> int:
-        return _IN_FLIGHT_CHUNKS * self._chunk_bytes
+        return _IN_FLIGHT_CHUNKS * self._most_bytes
