@@ -10,7 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from daemon import __version__
@@ -38,7 +38,6 @@ from daemon.jobs.pool import Pool
 from daemon.jobs.retention import Retention
 from daemon.jobs.runner import Runner
 from daemon.jobs.scanning import Scanning
-from daemon.jobs.sheet import counts_from_home, homes
 from daemon.machine.recorder import Recorder
 from daemon.notify import Notifier
 from daemon.program.file import load_program
@@ -78,7 +77,8 @@ def parts_of(
     Raises SettingsError when another daemon works on it or its programs suit no machine here, and DiskTrouble.
     """
     paths, name = settings.paths, settings.machine_name
-    check(settings.machines[name])
+    machine = settings.machines[name]
+    check(machine)
     for folder in (paths.state_dir, paths.inbox, paths.log_dir, paths.runtime_dir):
         make_folder(folder)
     with ExitStack() as at_end:
@@ -96,27 +96,25 @@ def parts_of(
             folders,
             say=diary.say,
             show=board.change,
-            asks_for_sheets=settings.machines[name].asks_for_sheets,
+            asks_for_sheets=machine.asks_for_sheets,
             ahead=settings.planning.ahead,
             rank=_rank_in(settings),
         )
-        life_m = settings.machines[name].pen_life_m
-        pen = PenLife(paths.state_dir / "pen.json", life_m, say=diary.say, show=board.change)
+        pen = PenLife(paths.state_dir / "pen.json", machine.pen_life_m, say=diary.say, show=board.change)
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
         recorder = at_end.enter_context(closing(Recorder(record))) if record else None
         pulse = Pulse()
         beats = Beats(pulse)
         mending = Mending(
-            settings.machines[name],
-            lambda hear, still: opened(settings.machines[name], beats.hearing(hear), still, recorder, beats.turned),
+            machine,
+            lambda hear, still: opened(machine, beats.hearing(hear), still, recorder, beats.turned),
             say=diary.say,
         )
-        machine = settings.machines[name]
         drawing = Drawing(
             desk,
             opened=mending.opened,
-            moves=moves_of(settings.machines[name]),
-            places=replace(places_of(pool, desk), homes=homes(machine), counts_from_home=counts_from_home(machine)),
+            moves=moves_of(machine),
+            places=places_of(pool, desk),
             load=load_program,
             measure=lambda folder: beats.measuring(pool, folder, name),
             inked=pen.drew,

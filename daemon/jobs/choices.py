@@ -48,9 +48,8 @@ class Choices:
         source = source_of(folder)
         if source is None:
             raise LinedrawError(f"the picture of job {job.id} is no longer kept: drop it into the inbox again")
-        new = self._desk.folders.copy(source)
-        if (folder / SIDE_NAME).exists():
-            write_durably(self._desk.folders.path(new) / SIDE_NAME, (folder / SIDE_NAME).read_bytes())
+        side = folder / SIDE_NAME
+        new = self._desk.folders.copy(source, {SIDE_NAME: side.read_bytes()} if side.exists() else None)
         return f"job {self._desk.add(new, job.name)} draws {job.name} once more"
 
     def drain(self) -> str:

@@ -98,10 +98,6 @@ class Desk:
         """Why no job may start, in a sentence; empty when they may."""
         return self.journal.held
 
-    def take(self, picture: Path, name: str) -> None:
-        """Make a job of a picture in the inbox. Raises DiskTrouble; it then still lies there."""
-        self.add(self.folders.take(picture), name)
-
     def copy(self, picture: Path, name: str) -> str:
         """Make a job of a copy of the picture. Returns the job's id. Raises DiskTrouble and FileNotFoundError."""
         return self.add(self.folders.copy(picture), name)

@@ -7,7 +7,6 @@ import logging
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeAlias
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.choices import NOT_PLACED, program_left
@@ -15,7 +14,7 @@ from daemon.jobs.desk import Desk
 from daemon.jobs.folder import write_durably
 from daemon.jobs.journal import Job
 from daemon.jobs.moves import Moves
-from daemon.jobs.open_machine import InkMm, OpenMachine
+from daemon.jobs.open_machine import InkMm, Open, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
 from daemon.jobs.progress import Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
@@ -28,9 +27,6 @@ _ENDED = "linedrawd ended in the middle of a drawing: set the pen to its origin 
 """The next one opens the port anew, which makes an origin of wherever the pen stands."""
 
 _PORT_STAYS_OPEN = {Verdict.FINISHED, Verdict.STOPPED, Verdict.REJECTED}
-
-Open: TypeAlias = Callable[[Callable[[Event], None], bool], OpenMachine]
-"""Opens the way to the machine; is given whom to tell what is heard, and whether nothing may move by itself."""
 
 
 class Drawing:

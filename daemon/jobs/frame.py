@@ -8,7 +8,7 @@ from daemon.jobs.desk import Desk
 from daemon.jobs.moves import PointMm
 from daemon.jobs.orders import Places, outline_mm, rectangle_mm
 from daemon.jobs.pool import Pool
-from daemon.jobs.sheet import box_origin_mm
+from daemon.jobs.sheet import box_origin_mm, counts_from_home, homes
 from daemon.program.file import load_program
 from daemon.shapes import Program
 
@@ -31,4 +31,4 @@ def places_of(pool: Pool, desk: Desk) -> Places:
         found = desk.next_to_draw()
         return load_program(desk.folders.path(found.id) / "program.gcode") if found else Program((), 0)
 
-    return Places(machine.park_mm, frame_mm, next_program)
+    return Places(machine.park_mm, frame_mm, next_program, homes(machine), counts_from_home(machine))

@@ -5,17 +5,14 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
 
 from daemon import usb
 from daemon.config import Machine
 from daemon.errors import NoMachine
-from daemon.jobs.open_machine import OpenMachine
+from daemon.jobs.open_machine import Open, OpenMachine
 from daemon.machine.ports import RESETTABLE_IDS, USB_URL
 from daemon.machine.serial_port import Adapter, adapters
 from firmware_protocol.session import Event, NotReady, Ready
-
-Open: TypeAlias = Callable[[Callable[[Event], None], bool], OpenMachine]
 
 
 class Mending:

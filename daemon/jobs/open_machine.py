@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol, TypeAlias
 
 from daemon.machine.link import Promise, promise_nothing
 from daemon.shapes import Program
 from firmware_protocol.ink import Vector
-from firmware_protocol.session import Ended, Ready
+from firmware_protocol.session import Ended, Event, Ready
 
 InkMm: TypeAlias = Sequence[Sequence[tuple[float, float]]]
+Open: TypeAlias = Callable[[Callable[[Event], None], bool], "OpenMachine"]
+"""Opens the way to the machine; is given whom to tell what is heard, and whether nothing may move by itself."""
 
 
 class OpenMachine(Protocol):

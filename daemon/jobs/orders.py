@@ -8,17 +8,15 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Literal, TypeAlias, get_args
 
+from daemon.control import MachineOrderName
 from daemon.errors import LinedrawError, MachineFault
 from daemon.jobs.moves import Moves, PointMm
 from daemon.jobs.open_machine import OpenMachine
 from daemon.shapes import Program
 from firmware_protocol.session import Ended, Verdict
 
-OrderName: TypeAlias = Literal["check", "home", "origin", "park", "frame", "pen up", "pen down", "jog"]
-ORDER_NAMES: tuple[OrderName, ...] = get_args(OrderName)
-WITHOUT_MOTION: frozenset[OrderName] = frozenset({"check", "pen up"})
+WITHOUT_MOTION: frozenset[MachineOrderName] = frozenset({"check", "pen up"})
 """These open the port without homing, and close it again where it was closed."""
 
 
@@ -26,7 +24,7 @@ WITHOUT_MOTION: frozenset[OrderName] = frozenset({"check", "pen up"})
 class MachineOrder:
     """x_mm, y_mm: of a jog. seconds: that the pen stays down. job: whose frame; "" for the next one."""
 
-    name: OrderName
+    name: MachineOrderName
     x_mm: float = 0.0
     y_mm: float = 0.0
     seconds: float = 10.0

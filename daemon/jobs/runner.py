@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import traceback
 from collections.abc import Callable
-from pathlib import Path
 
 from daemon.errors import LinedrawError
 from daemon.jobs.desk import DISK_RETRY_S, Desk
@@ -42,9 +41,6 @@ class Runner:
     def draw_on(self) -> None:
         self._turn_on(self._drawing.turn, self._pulse.drawing, DRAWING_WITHIN_S)
         self._drawing.end()
-
-    def take(self, picture: Path, name: str) -> None:
-        self._desk.take(picture, name)
 
     def new_sheet(self) -> str:
         self._desk.new_sheet()

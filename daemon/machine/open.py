@@ -34,17 +34,15 @@ class Conversation(Generic[S]):
 
     session: makes the session, given the time at which the port was opened. times: when each line of a program will
     have been drawn, in s from its start, as far as the session knows its machine; raises ProtocolError or ValueError
-    for what the model does not know. check: what the machine says of itself, in lines for a person. sheet_mm: where the
-    simulated machine's ink has the sheet's corner. lift: raises the pen where it stands; None where the machine cannot
-    be asked to. moved: a line of a program, displaced by x and y in mm; None where programs cannot be displaced. home:
-    begins homing between two jobs; None where a program does that. rests: why no job can be begun until the machine is
-    homed or gets an origin; "" when one can.
+    for what the model does not know. check: what the machine says of itself, in lines for a person. lift: raises the
+    pen where it stands; None where the machine cannot be asked to. moved: a line of a program, displaced by x and y in
+    mm; None where programs cannot be displaced. home: begins homing between two jobs; None where a program does that.
+    rests: why no job can be begun until the machine is homed or gets an origin; "" when one can.
     """
 
     session: Callable[[float], S]
     times: Callable[[S, Sequence[str]], Sequence[float]]
     check: Callable[[S, Program], Sequence[str]]
-    sheet_mm: PlaceMm = (0.0, 0.0)
     lift: Program | None = None
     moved: Callable[[str, PlaceMm], str] | None = None
     home: Callable[[S, float], None] | None = None
@@ -123,7 +121,7 @@ class OpenedMachine(Generic[S]):
         if not isinstance(transport, SimulatedTransport):
             return None
         new, self._polylines_taken = transport.ink[self._polylines_taken :], len(transport.ink)
-        x_mm, y_mm = (a + b for a, b in zip(self._conversation.sheet_mm, self._corner_mm, strict=True))
+        x_mm, y_mm = self._corner_mm
         return [[(x - x_mm, y - y_mm) for x, y in line] for line in new]
 
     def position_mm(self) -> Vector | None:

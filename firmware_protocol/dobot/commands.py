@@ -110,7 +110,7 @@ BY_NAME = {kind.name: kind for kind in _TABLE}
 
 NONE_YET = 0xFFFFFFFFFFFFFFFF
 """What some arms call the index of the last executed command before anything was executed; others say 0."""
-MOVJ_XYZ, MOVL_XYZ = 1, 2
+MOVL_XYZ = 2
 """Modes of PTP: all joints at once, and in a straight line."""
 PTP_TO_A_PLACE = frozenset({0, 1, 2, 3, 4, 5, 9})
 """Modes of PTP that state where to go; the others state how far."""

@@ -79,11 +79,6 @@ class EmcoSimulator:
         return self._reading.blocks
 
     @property
-    def received(self) -> int:
-        """Bytes that have left the host."""
-        return self._received
-
-    @property
     def xons(self) -> int:
         """How often XON has been said, a lost one included."""
         return self._xons

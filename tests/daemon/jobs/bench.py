@@ -190,7 +190,7 @@ class Bench:
 
     def drop(self, name: str = "a.png", text: str = "good") -> str:
         (self.inbox / name).write_text(text)
-        self.desk.take(self.inbox / name, name)
+        self.desk.add(self.desk.folders.take(self.inbox / name), name)
         return self.journal.jobs()[-1].id
 
     def planned(self, name: str = "a.png") -> str:

@@ -93,7 +93,7 @@ class House:
         """From the inbox to the paper; a person says `go` after every fault."""
         self.desk.recover(self.inbox)
         for picture in sorted(self.inbox.glob("*.png")):
-            self.desk.take(picture, picture.name)
+            self.desk.add(self.desk.folders.take(picture), picture.name)
         for _ in range(2 * len(PICTURES) + 2):
             self.planning.turn()
             if self.desk.held:

@@ -9,16 +9,17 @@ from threading import Thread
 import pytest
 
 from daemon.config import GrblMachine
+from daemon.control import MachineOrderName
 from daemon.errors import LinedrawError
 from daemon.jobs.moves import GrblMoves
-from daemon.jobs.orders import MachineOrder, OrderName, outline_mm
+from daemon.jobs.orders import MachineOrder, outline_mm
 from firmware_protocol.session import Verdict
 from tests.daemon.jobs.bench import Bench, fault
 
 LIFT = ["G21 G90", "G0 Z5.000"]
 
 
-def order(bench: Bench, name: OrderName, **figures: float) -> str:
+def order(bench: Bench, name: MachineOrderName, **figures: float) -> str:
     """Given in another thread, as it is in the daemon, and obeyed by turns of this one."""
     said: list[str] = []
 
@@ -51,7 +52,7 @@ def order(bench: Bench, name: OrderName, **figures: float) -> str:
     ],
 )
 def test_each_order_is_a_program_without_strokes(
-    bench: Bench, name: OrderName, figures: dict[str, float], program: list[str]
+    bench: Bench, name: MachineOrderName, figures: dict[str, float], program: list[str]
 ) -> None:
     assert not order(bench, name, **figures).startswith("refused")
     assert bench.machine.programs == [program]
@@ -68,7 +69,7 @@ def test_the_machine_tells_who_it_is(bench: Bench) -> None:
 
 @pytest.mark.parametrize(("name", "still", "closed"), [("check", True, 1), ("pen up", True, 1), ("park", False, 0)])
 def test_while_held_a_port_is_opened_for_an_order_and_homed_only_to_move(
-    bench: Bench, name: OrderName, still: bool, closed: int
+    bench: Bench, name: MachineOrderName, still: bool, closed: int
 ) -> None:
     bench.runner.stop()
     assert not order(bench, name).startswith("refused")
