@@ -30,7 +30,7 @@ def order(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place | None) -
         return ()
     given = list(strokes)
     greedy = _nearest(given, start_mm)
-    best = min((given, greedy), key=lambda tour: _travel(tour, start_mm, end_mm))
+    best = min((given, greedy), key=lambda tour: travel_mm(tour, start_mm, end_mm))
     improved = turn_closed(_improved(best, start_mm, end_mm), start_mm, end_mm)
     if not any(map(is_closed, given)):
         return tuple(improved)
@@ -59,7 +59,8 @@ def _improved(strokes: list[Stroke], start_mm: Place, end_mm: Place | None) -> l
     return [_reversed(strokes[code >> 1]) if code & 1 else strokes[code >> 1] for code in tour.tolist()]
 
 
-def _travel(strokes: list[Stroke], start_mm: Place, end_mm: Place | None) -> float:
+def travel_mm(strokes: Sequence[Stroke], start_mm: Place, end_mm: Place | None) -> float:
+    """The way with the pen up, from start_mm through the strokes as they are given to end_mm, or to anywhere (None)."""
     last = strokes[-1].points[-1]
     leave = np.array([start_mm, *(stroke.points[-1] for stroke in strokes)], float)
     arrive = np.array([*(stroke.points[0] for stroke in strokes), last if end_mm is None else end_mm], float)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from daemon.shapes import Points, Stroke
 from daemon.toolpath.doors import Near, nearest_doors
-from daemon.toolpath.order import Place, turn_closed
+from daemon.toolpath.order import Place, travel_mm, turn_closed
 from daemon.toolpath.simplify import shared_points
 from daemon.toolpath.tour import Tour
 
@@ -45,7 +45,10 @@ def rejoined(strokes: Sequence[Stroke], *, start_mm: Place, end_mm: Place | None
         return tuple(strokes)
     tour = _Pieces(pieces, nodes, start_mm, end_mm)
     tour.shorten()
-    return tuple(turn_closed(_joined(pieces, nodes, tour.opened()), start_mm, end_mm))
+    joined = turn_closed(_joined(pieces, nodes, tour.opened()), start_mm, end_mm)
+    # The tour may have paid a little travel for straighter lines; those of the given strokes are straight enough.
+    more_mm = travel_mm(joined, start_mm, end_mm) - travel_mm(strokes, start_mm, end_mm)
+    return tuple(strokes if more_mm > _LEAST_GAIN and len(joined) == len(strokes) else joined)
 
 
 class _Pieces(Tour):

@@ -6,7 +6,7 @@ from itertools import groupby
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from daemon.shapes import Stroke
@@ -21,6 +21,8 @@ walks = st.lists(knots, min_size=1, max_size=6).map(lambda stops: line(*(place f
 
 @settings(max_examples=100, deadline=None)
 @given(st.lists(walks, min_size=1, max_size=7))
+@example([line((0, 10)), line((20, 0)), line((0, 0), (10, 0)), line((0, 10), (30, 0), (0, 10)),
+          line((30, 30), (10, 0), (0, 20))])  # fmt: skip
 def test_every_line_is_drawn_once_with_no_more_travel_or_fewer_lifts(
     strokes: list[Stroke],
 ) -> None:
