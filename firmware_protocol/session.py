@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol, TypeAlias
+from typing import Literal, Protocol, TypeAlias
 
 
 class Verdict(Enum):
@@ -104,9 +104,19 @@ class Paused:
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """The machine waits for a person in the middle of a job: `why` says what happened, and what to press."""
+    """The machine waits for a person: `why` says what happened, and what to press.
+
+    cause: what has stopped the pen on its way, its feed hold or its door, or motors without current; "" where nothing
+    was moving.
+    """
 
     why: str
+    cause: Literal["hold", "door", "sleep", ""] = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Resumed:
+    """The machine goes on with the job, after `Paused` or `Waiting`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +138,7 @@ class Ended:
     estimated: bool = False
 
 
-Event: TypeAlias = Ready | NotReady | Accepted | Status | Sent | Ended | Found | Paused | Waiting
+Event: TypeAlias = Ready | NotReady | Accepted | Status | Sent | Ended | Found | Paused | Waiting | Resumed
 
 
 class JobLine(Protocol):

@@ -16,7 +16,7 @@ from firmware_protocol.dobot.states import TRANSITIONS, Signal, State
 from firmware_protocol.dobot.steps import Script, Turn, Wait
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.ink import Vector
-from firmware_protocol.session import Event, JobLine, NotReady, Paused, Ready, Verdict
+from firmware_protocol.session import Event, JobLine, NotReady, Paused, Ready, Resumed, Verdict
 
 STOP_NOW = b"".join(command(name).packet(queued=False).encode() for name in ("ForceStopExec", "Clear"))
 """Said to an arm that no longer answers, in case it still hears."""
@@ -234,6 +234,7 @@ class Conversation:
 
     def _enter_drawing(self, turn: Turn) -> None:
         self.job.stop_before = None
+        self.events += [Resumed()] * (turn.signal is Signal.RESUME)
 
     def _enter_paused(self, _: Turn) -> None:
         cut = None if self.cut is None else self.on_sheet(self.cut)[:2]

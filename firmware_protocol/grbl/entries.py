@@ -11,7 +11,7 @@ from firmware_protocol.grbl.flow import BARRIER, Flow
 from firmware_protocol.grbl.habits import ASK, HOLD, RESET
 from firmware_protocol.grbl.preparation import CHECK_MODE
 from firmware_protocol.grbl.states import Signal, State
-from firmware_protocol.session import NotReady, Ready, Verdict, Waiting
+from firmware_protocol.session import NotReady, Ready, Resumed, Verdict, Waiting
 
 if TYPE_CHECKING:
     from firmware_protocol.grbl.conversation import Conversation
@@ -83,8 +83,9 @@ def _leaving(talk: Conversation, _: Cause) -> None:
     talk.flow = Flow((CHECK_MODE,), room_bytes=None)
 
 
-def _streaming(talk: Conversation, _: Cause) -> None:
+def _streaming(talk: Conversation, cause: Cause) -> None:
     assert talk.job is not None
+    talk.events += [Resumed()] * (cause.signal is Signal.RESUME)
     talk.flow, talk.astray, talk.elsewhere, talk.waits_for = talk.job.leg.flow, 0, 0, ""
 
 

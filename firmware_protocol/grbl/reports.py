@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from firmware_protocol.grbl import sentences
 from firmware_protocol.grbl.habits import ASK, HOLD, HOLD_WITHIN_S, RESET, STANDS
 from firmware_protocol.grbl.replies import StatusReport
 from firmware_protocol.grbl.states import RUNNING, Signal, State
-from firmware_protocol.session import Finding, Found, Status, Waiting
+from firmware_protocol.session import Finding, Found, Resumed, Status, Waiting
 
 if TYPE_CHECKING:
     from firmware_protocol.grbl.conversation import Conversation
@@ -20,6 +20,7 @@ ASTRAY_REPORTS = 2
 
 _WAITS = {"Hold": {"Hold:0"}, "Door": {"Door:0", "Door:1"}, "Sleep": {"Sleep"}}
 """States in which the machine goes on only when a person does something."""
+_CAUSES: dict[str, Literal["hold", "door", "sleep"]] = {"Hold": "hold", "Door": "door", "Sleep": "sleep"}
 _STOP_WORD = re.compile(r"M0+(?!\d)")
 
 
@@ -42,7 +43,9 @@ def _follow(talk: Conversation, report: StatusReport) -> None:
     """Does the pen go where the lines lead it, or wait for somebody?"""
     waits = report.state if report.word in _WAITS.get(report.state, ()) else ""
     if waits and waits != talk.waits_for:
-        talk.events.append(Waiting(_waiting(talk, waits)))
+        talk.events.append(Waiting(_waiting(talk, waits), _CAUSES[waits]))
+    if talk.waits_for and not waits:
+        talk.events.append(Resumed())
     talk.waits_for = waits
     if talk.job is None or talk.flow is not talk.job.leg.flow or talk.flow.homing:
         return

@@ -9,7 +9,7 @@ from firmware_protocol.dobot.simulator.arm import Build
 from firmware_protocol.dobot.states import State
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.ink import Polyline
-from firmware_protocol.session import Accepted, Paused, Status, Verdict
+from firmware_protocol.session import Accepted, Paused, Resumed, Status, Verdict
 from tests.firmware_protocol.dobot.bench import Bench, Line, stroke, strokes
 
 
@@ -155,6 +155,7 @@ def test_a_pause_stands_at_the_end_of_a_stroke_and_goes_on(after_s: float) -> No
     bench.until(lambda: bench.over)
     assert bench.ended.verdict is Verdict.FINISHED
     assert rounded(bench.sim.ink) == whole(12)
+    assert bench.all_of(Resumed) == [Resumed()]
 
 
 @pytest.mark.parametrize("abort_counts", [False, True])

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.grbl.states import State
 from firmware_protocol.ink import PenRule
-from firmware_protocol.session import Accepted, Ended, Paused, Verdict
+from firmware_protocol.session import Accepted, Ended, Paused, Resumed, Verdict
 from tests.firmware_protocol.grbl.driver import Line, drawing, ready
 from tests.firmware_protocol.grbl.pair import FAST, TOUCHES_MM, Pair, missing_mm, plotter, stroke_lines
 
@@ -66,6 +66,7 @@ def test_a_pause_comes_behind_the_stroke_with_the_pen_up_and_the_rest_follows() 
     end = pair.until(Ended)
     assert (end.verdict, end.strokes_certain, len(pair.sim.ink)) == (Verdict.FINISHED, len(COMB), len(COMB))
     assert missing_mm(COMB, pair.sim.ink) < TOUCHES_MM
+    assert [type(event) for event in pair.events if isinstance(event, Paused | Resumed)] == [Paused, Resumed]
 
 
 def test_lines_are_accepted_once_whatever_is_sent_again() -> None:

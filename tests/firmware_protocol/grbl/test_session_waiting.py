@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firmware_protocol.session import Ended, Verdict, Waiting
+from firmware_protocol.session import Ended, Resumed, Verdict, Waiting
 from tests.firmware_protocol.grbl.driver import RUN, Line, Play, drawing
 from tests.firmware_protocol.grbl.pair import TOUCHES_MM, Pair, missing_mm, plotter, stroke_lines
 
@@ -42,16 +42,19 @@ def test_a_program_stop_can_be_the_end() -> None:
     assert end.strokes_certain <= 1 <= end.strokes_possible
 
 
-@pytest.mark.parametrize(("byte", "sentence"), [(b"!", "feed hold"), (b"\x84", "safety door")])
-def test_a_hold_and_a_door_that_nobody_asked_for_are_told_and_end_well(byte: bytes, sentence: str) -> None:
+@pytest.mark.parametrize(("byte", "sentence", "cause"), [(b"!", "feed hold", "hold"), (b"\x84", "safety door", "door")])
+def test_a_hold_and_a_door_that_nobody_asked_for_are_told_and_end_well(byte: bytes, sentence: str, cause: str) -> None:
     pair = Pair(plotter()).ready()
     pair.session.start(stroke_lines(CORNERS), pair.now)
     pair.wait(1.5)
     pair.sim.receive(byte, pair.now)
-    assert sentence in pair.until(Waiting, within_s=5.0).why
+    told = pair.until(Waiting, within_s=5.0)
+    assert (sentence in told.why, told.cause) == (True, cause)
     pair.wait(30.0)
+    assert not any(isinstance(event, Resumed) for event in pair.events)
     pair.session.resume(pair.now)
     assert pair.until(Ended).verdict is Verdict.FINISHED
+    assert sum(isinstance(event, Resumed) for event in pair.events) == 1
     assert missing_mm(CORNERS, pair.sim.ink) < TOUCHES_MM
 
 
