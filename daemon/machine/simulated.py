@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from urllib.parse import parse_qsl, urlsplit
 
 from daemon.errors import MachineFault, SettingsError, Unplugged
+from firmware_protocol.crooked import Crooked
 from firmware_protocol.grbl.simulator.faults import (
     BrownOut,
     DropByte,
@@ -26,7 +27,7 @@ from firmware_protocol.simulator import Simulator
 
 _AT: Mapping[str, type[Timed]] = {"hang": Hang, "brownout": BrownOut, "limit": HardLimit, "unplug": Unplug}
 _NUMBERED: Mapping[str, type[DropByte | FlipByte | LoseOk]] = {"drop": DropByte, "flip": FlipByte, "lose_ok": LoseOk}
-_OTHER = ("speed", "boot_s", "pen_z", "pen_s", "switches")
+_OTHER = ("speed", "boot_s", "pen_z", "pen_s", "switches", "scale", "skew", "backlash")
 _EXAMPLE = "sim://grbl?speed=1&pen_z=0&110=3000&hang=2.5"
 
 
@@ -134,9 +135,9 @@ def simulator_of(
     """The simulated machine that a URL such as `sim://grbl?pen_z=0&110=3000&hang=2.5` describes.
 
     The query may hold `speed`, `boot_s`, the pen (`pen_z` height in mm, or `pen_s=DOWN:UP` values of S), the homing
-    `switches=X:Y:Z` in mm from where the pen stands first, `$` settings by number, and faults: `hang`, `brownout`,
-    `limit` and `unplug` in seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0;
-    `usb_ms` of a slow converter. What it says goes before the arguments.
+    `switches=X:Y:Z` in mm from where the pen stands first, in what its axes are crooked (`scale=X:Y`, `skew` in
+    degrees, `backlash=X:Y` in mm), `$` settings by number, and faults: `hang`, `brownout`, `limit` and `unplug` in
+    seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0; `usb_ms` of a slow converter. What it says goes before the arguments.
     Raises SettingsError for anything else.
     """
     parts = urlsplit(url)
@@ -153,6 +154,7 @@ def simulator_of(
             pen=_pen(options) or pen,
             boot_s=float(options.get("boot_s", 0)),
             switches_mm=_switches(options["switches"]) if "switches" in options else None,
+            crooked=_crooked(options),
         )
     except ValueError as error:
         raise SettingsError(f"{url}: {error}: write for example {_EXAMPLE}") from error
@@ -173,6 +175,18 @@ def _fault(key: str, value: str) -> Fault:
 def _switches(text: str) -> tuple[float, float, float]:
     x_mm, y_mm, z_mm = map(float, text.split(":"))
     return x_mm, y_mm, z_mm
+
+
+def _crooked(options: Mapping[str, str]) -> Crooked | None:
+    if not {"scale", "skew", "backlash"} & options.keys():
+        return None
+    scale_x, scale_y = _pair(options.get("scale", "1:1"))
+    return Crooked(scale_x, scale_y, float(options.get("skew", 0)), _pair(options.get("backlash", "0:0")))
+
+
+def _pair(text: str) -> tuple[float, float]:
+    x, y = map(float, text.split(":"))
+    return x, y
 
 
 def _pen(options: Mapping[str, str]) -> PenRule | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from firmware_protocol.crooked import Crooked, CrookedInk
 from firmware_protocol.grbl.simulator import firmware
 from firmware_protocol.grbl.simulator.chip import Chip, Signal, State
 from firmware_protocol.grbl.simulator.events import AllOpen, HardwareReset, Pin, PlugIn, Touch, read_event
@@ -43,6 +44,7 @@ class GrblSimulator:
     settings: `$` numbers to values that differ from the generic defaults. pen: when it touches the sheet.
     boot_s: how long the boot loader is deaf after `open`. switches_mm: where the homing switches lie, from the place
     where the machine was switched on, each at the end that $23 seeks; without it `$H` ends in ALARM:9.
+    crooked: in which way its axes are not what it believes.
     Raises ValueError for an unknown setting.
     """
 
@@ -54,12 +56,14 @@ class GrblSimulator:
         pen: PenRule | None = None,
         boot_s: float = 0.0,
         switches_mm: Vector | None = None,
+        crooked: Crooked | None = None,
     ) -> None:
         self._faults = tuple(faults)
         self._timed_faults = [f for f in faults if isinstance(f, Hang | BrownOut | HardLimit | Unplug)]
         self._boot_s = boot_s
         self._outbound = Outbound()
-        self._chip = Chip(Memory(Settings(settings)), Ink(pen or PenRule()), self._say)
+        ink = CrookedInk(pen or PenRule(), crooked) if crooked else Ink(pen or PenRule())
+        self._chip = Chip(Memory(Settings(settings)), ink, self._say)
         self._chip.inputs = _homing_switches(self._chip.settings, switches_mm)
         self._origin_mm = HERE
         self._asked: list[Fault] = []
