@@ -51,6 +51,14 @@ class Machine(Section):
     """How the pen is lowered and lifted: a section of its own."""
     pen_life_m: Positive | None = None
     """After so many metres of line the pen is worn, which is said; a file PEN in the inbox tells that it is new."""
+    scale_x: Annotated[float, Field(ge=0.5, le=2)] = 1.0
+    """So many mm the pen really goes to the right for one mm; `linedrawd calibrate` measures it and the next three."""
+    scale_y: Annotated[float, Field(ge=0.5, le=2)] = 1.0
+    """So many mm it really goes up for one mm."""
+    skew_deg: Annotated[float, Field(ge=-10, le=10)] = 0.0
+    """So far its Y axis leans to the right, where it should stand at a right angle to X."""
+    backlash_mm: tuple[Annotated[float, Field(ge=0, le=5)], Annotated[float, Field(ge=0, le=5)]] = (0.0, 0.0)
+    """So far X and Y run before the pen follows, whenever they turn round."""
     sheet: Literal["ask", "feed", "auto"] = "auto"
     """"ask": wait for a person after each drawing; "feed": draw on; "auto": feed on a simulated machine, else ask."""
 

@@ -24,6 +24,7 @@ from daemon.graph.strokes import strokes
 from daemon.graph.verdicts import as_json
 from daemon.intake.decode import decode
 from daemon.intake.scanner import is_scan
+from daemon.jobs.correction import told
 from daemon.jobs.devices import program_of, seconds_of
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
@@ -75,7 +76,8 @@ def plan_picture(
         scanned = is_scan(Path(name).name)
         toolpath = _toolpath(drawing, page, settings, settings.machines[machine], scanned=scanned)
     with stages("program"):
-        program = program_of(toolpath, settings.machines[machine], folder.name)
+        told_to_it = told(toolpath, settings.sheet, settings.machines[machine])
+        program = program_of(told_to_it, settings.machines[machine], folder.name)
         estimated_s = seconds_of(program, settings.machines[machine])
     with stages("report"):
         _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, (page, segmentation, graph, on_page))

@@ -8,15 +8,20 @@ _BEYOND_EVERY_ARM_MM = 1000.0
 """An arm reaches no rectangle: program/dobot.py checks each point by its joints."""
 
 
+def corner_mm(machine: Machine) -> tuple[float, float]:
+    """Where the sheet's corner lies in machine mm: where the pen stands or, homed, at origin_mm."""
+    return machine.origin_mm if isinstance(machine, GrblMachine) and machine.origin == "homed" else (0.0, 0.0)
+
+
 def box_origin_mm(sheet: Sheet, machine: Machine) -> tuple[float, float]:
-    """The box's lower left corner in machine mm. The sheet's corner is where the pen stands or, homed, at origin_mm."""
-    corner_mm = machine.origin_mm if isinstance(machine, GrblMachine) and machine.origin == "homed" else (0.0, 0.0)
+    """The box's lower left corner in machine mm."""
+    corner_x_mm, corner_y_mm = corner_mm(machine)
     x_mm, y_mm = sheet.box_origin_mm
     if sheet.corner.endswith("right"):
         x_mm = -x_mm - sheet.box_mm[0]
     if sheet.corner.startswith("upper"):
         y_mm = -y_mm - sheet.box_mm[1]
-    return corner_mm[0] + x_mm, corner_mm[1] + y_mm
+    return corner_x_mm + x_mm, corner_y_mm + y_mm
 
 
 def reach_mm(machine: Machine) -> tuple[float, float]:
