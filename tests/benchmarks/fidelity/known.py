@@ -10,7 +10,8 @@ import numpy as np
 from daemon.shapes import Grey, Map, Points
 
 PEN_PX = 3.0
-_FINE = 4
+WITHIN_PX = 1.5
+FINER = 4
 _PIECE_PX = 12.0
 
 
@@ -22,34 +23,46 @@ class Known:
     strokes: Sequence[Points]
     side_px: int
     pen_px: float = PEN_PX
+    finer: int = FINER
+    """How many times as fine as the picture's the grid is on which the ink is drawn."""
+    given: Grey | None = None
+    """What somebody gives of it, (H, W), longer side `side_px`: a photo, a scan; None: the ink, black on white."""
+
+    @property
+    def within_px(self) -> float:
+        """So near to a true line a drawn one is on it: half a line's width, at least a pixel and a half."""
+        return max(WITHIN_PX, self.pen_px / 2)
 
     @property
     def fine(self) -> Map:
-        """The ink, 0..1, on a grid four times as fine as the picture's."""
-        return fine_ink(self.strokes, self.side_px, self.pen_px)
+        """The ink, 0..1, on a grid `finer` times as fine as the picture's."""
+        return fine_ink(self.strokes, self.side_px, self.pen_px, finer=self.finer)
 
     @property
     def ink(self) -> Map:
         """How much of each pixel is inked, (side, side) in 0..1."""
-        return _averaged(self.fine)
+        return averaged(self.fine, finer=self.finer)
 
     @property
     def grey(self) -> Grey:
-        """Black on white."""
+        """What is given."""
+        if self.given is not None:
+            return self.given
         return np.asarray(np.rint(255 * (1 - self.ink)), np.uint8)
 
 
-def fine_ink(strokes: Sequence[Points], side_px: int, pen_px: float) -> Map:
-    """The ink of a round pen on a grid of 4 x side_px: exact distances to the lines, soft over one fine pixel."""
-    away = np.full((side_px * _FINE, side_px * _FINE), np.inf, np.float32)
+def fine_ink(strokes: Sequence[Points], side_px: int, pen_px: float, *, finer: int = FINER) -> Map:
+    """The ink of a round pen on a grid of finer x side_px: exact distances to the lines, soft over one fine pixel."""
+    away = np.full((side_px * finer, side_px * finer), np.inf, np.float32)
     for a, b in zip(*pieces(strokes, _PIECE_PX), strict=True):
-        _nearer(away, _on_fine(a), _on_fine(b), pen_px / 2 * _FINE + 1)
-    return np.asarray(np.clip(0.5 + pen_px / 2 * _FINE - away, 0, 1), np.float32)
+        _nearer(away, (a + 0.5) * finer - 0.5, (b + 0.5) * finer - 0.5, pen_px / 2 * finer + 1)
+    return np.asarray(np.clip(0.5 + pen_px / 2 * finer - away, 0, 1), np.float32)
 
 
-def _averaged(fine: Map) -> Map:
-    side = fine.shape[0] // _FINE
-    return np.asarray(fine.reshape(side, _FINE, side, _FINE).mean(axis=(1, 3)), np.float32)
+def averaged(fine: Map, *, finer: int = FINER) -> Map:
+    """Each pixel the mean of its finer x finer fine ones."""
+    side = fine.shape[0] // finer
+    return np.asarray(fine.reshape(side, finer, side, finer).mean(axis=(1, 3)), np.float32)
 
 
 def pieces(strokes: Sequence[Points], longest_px: float) -> tuple[Points, Points]:
@@ -61,10 +74,6 @@ def pieces(strokes: Sequence[Points], longest_px: float) -> tuple[Points, Points
     part = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     a, step = np.repeat(a, counts, axis=0), np.repeat((b - a) / counts[:, None], counts, axis=0)
     return a + step * part[:, None], a + step * (part + 1)[:, None]
-
-
-def _on_fine(point: Points) -> Points:
-    return np.asarray((point + 0.5) * _FINE - 0.5)
 
 
 def _nearer(away: Map, a: Points, b: Points, reach: float) -> None:

@@ -15,8 +15,8 @@ from tests.benchmarks.fidelity.known import Known
 from tests.benchmarks.fidelity.nearest import nearest_px
 from tests.benchmarks.fidelity.planar import planar
 
-WITHIN_PX = 1.5
 STEP_PX = 0.25
+_INVENTED_PENS = 3
 _INK_BESIDE_PX = 1.0
 """Ink so near to the redrawn ink is not visibly missing."""
 
@@ -28,9 +28,9 @@ class Measure:
     chamfer_px: float
     """Mean of the mean distances from drawn to true and from true to drawn samples."""
     precision: float
-    """Share of the drawn samples within 1.5 px of a true one."""
+    """Share of the drawn samples within 1.5 px, or half a pen's width if that is more, of a true one."""
     recall: float
-    """Share of the true samples within 1.5 px of a drawn one."""
+    """Share of the true samples as near to a drawn one."""
     f1: float
     iou: float
     """Soft: sum of the lesser by sum of the greater of true ink and drawn strokes inked with the same pen."""
@@ -43,6 +43,8 @@ class Measure:
     strokes: int
     minimum: int
     """The fewest strokes that can draw the true lines."""
+    invented_px: float
+    """Drawn length farther from every true line than three pens are wide."""
     pen_up_px: float
     """Straight ways between the strokes as they follow each other, from (0, 0)."""
 
@@ -51,7 +53,7 @@ def measure(known: Known, drawn: Sequence[Points]) -> Measure:
     """Of the drawn strokes in px of the picture, each (N, 2), N >= 1, in drawing order."""
     true, ours = samples(known.strokes), samples(drawn)
     to_true, to_drawn = distances(ours, true), distances(true, ours)
-    precision, recall = (float((each <= WITHIN_PX).mean()) if len(each) else 0.0 for each in (to_true, to_drawn))
+    precision, recall = (float((each <= known.within_px).mean()) if len(each) else 0.0 for each in (to_true, to_drawn))
     fewest = planar(known.strokes)
     ink = known.ink
     redrawn = replace(known, strokes=drawn).ink
@@ -67,6 +69,7 @@ def measure(known: Known, drawn: Sequence[Points]) -> Measure:
         stroke_ratio=len(drawn) / fewest.fewest_strokes,
         strokes=len(drawn),
         minimum=fewest.fewest_strokes,
+        invented_px=float((to_true > _INVENTED_PENS * known.pen_px).sum()) * STEP_PX,
         pen_up_px=pen_up_px(drawn),
     )
 

@@ -11,7 +11,7 @@ from daemon.report import canvas
 from daemon.report.canvas import Picture
 from daemon.shapes import Points
 from tests.benchmarks.fidelity.known import Known
-from tests.benchmarks.fidelity.measure import WITHIN_PX, distances, samples
+from tests.benchmarks.fidelity.measure import distances, samples
 
 _SIDE_PX = 1024
 
@@ -20,7 +20,8 @@ def overlay(known: Known, drawn: Sequence[Points]) -> Picture:
     """Pale ink; true lines blue, drawn ones red from a ring on; orange: not drawn, green: drawn but not true."""
     scale = _SIDE_PX / known.side_px
     pale = np.asarray(190 + known.grey * (65 / 255), np.uint8)
-    large = cv2.resize(pale, (_SIDE_PX, _SIDE_PX), interpolation=cv2.INTER_NEAREST)
+    size = [round(side * scale) for side in pale.shape[::-1]]
+    large = cv2.resize(pale, size, interpolation=cv2.INTER_NEAREST)
     picture = np.asarray(cv2.cvtColor(large, cv2.COLOR_GRAY2BGR), np.uint8)
     for stroke in known.strokes:
         canvas.line(picture, (stroke + 0.5) * scale - 0.5, canvas.BLUE)
@@ -29,6 +30,6 @@ def overlay(known: Known, drawn: Sequence[Points]) -> Picture:
         canvas.dot(picture, (stroke[0] + 0.5) * scale - 0.5, 4, canvas.PAPER, canvas.RED)
     true, ours = samples(known.strokes), samples(drawn)
     for some, others, colour in ((true, ours, canvas.ORANGE), (ours, true, canvas.GREEN)):
-        for point in some[distances(some, others) > WITHIN_PX]:
+        for point in some[distances(some, others) > known.within_px]:
             canvas.dot(picture, (point + 0.5) * scale - 0.5, 3, colour)
     return picture

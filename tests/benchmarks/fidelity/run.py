@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -18,10 +19,19 @@ from tests.benchmarks.fidelity.known import Known
 from tests.benchmarks.fidelity.measure import measure
 from tests.benchmarks.fidelity.ours import Understood, explained, understood
 from tests.benchmarks.fidelity.overlay import overlay
+from tests.benchmarks.fidelity.photographed import hard_photos, photos
+from tests.benchmarks.fidelity.scanned import scans
 from tests.benchmarks.fidelity.sketches import SKETCHES, sketches
 from tests.benchmarks.fidelity.technical import technical
 
-SETS = ("quickdraw", "scribbles", "curves", "technical", "order")
+SETS = ("quickdraw", "scribbles", "curves", "technical", "photo", "hard photo", "scan", "order")
+OWN: dict[str, Callable[[], list[Known]]] = {
+    "curves": curves,
+    "technical": technical,
+    "photo": photos,
+    "hard photo": hard_photos,
+    "scan": scans,
+}
 
 
 def main() -> None:
@@ -55,7 +65,7 @@ def chosen(wanted: argparse.Namespace) -> dict[str, tuple[str, list[Known]]]:
     """The sets that are asked for and that there are drawings of, each with a few words about it."""
     names = wanted.set or SETS
     found = from_quickdraw(wanted) if {"quickdraw", "scribbles"} & set(names) else {}
-    for name, drawings in {"curves": curves, "technical": technical}.items():
+    for name, drawings in OWN.items():
         if name in names:
             some = drawings()[: wanted.limit]
             found[name] = f"{len(some)} drawings of {some[0].side_px} px", some

@@ -22,7 +22,7 @@ LINE: Points = line((20, 40), (100, 40))
 KNOWN = Known("a line", [LINE], 128)
 PERFECT = Measure(
     chamfer_px=0, precision=1, recall=1, f1=1, iou=1, ink_recall=1, length_ratio=1,
-    stroke_ratio=1, strokes=1, minimum=1, pen_up_px=44.7,
+    stroke_ratio=1, strokes=1, minimum=1, invented_px=0, pen_up_px=44.7,
 )  # fmt: skip
 
 
