@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from firmware_protocol.dobot import scripts, sentences
 from firmware_protocol.dobot.commands import command
+from firmware_protocol.dobot.count import Count
 from firmware_protocol.dobot.exchange import Ask, Exchange, acknowledged
 from firmware_protocol.dobot.job import Job
 from firmware_protocol.dobot.kinematics import Flat
@@ -62,17 +63,13 @@ class Conversation:
         self.firmware = ""
         self.noise = False
         """Bytes came, whatever they are."""
-        self.queue = Queue(0, before=0)
+        self.queue = Queue(0, before=0, stale=True)
+        self.count = Count()
         self.cut: Vector | None = None
         """Where a stroke was cut by a pause, until it is taken up again."""
         self.lifted = self.position_known = False
         self.first_line: int | None = None
         """Line of the job minus its number in the queue; None while the queue holds no lines."""
-        self.usually_left_over: int | None = None
-        """How many more commands 247 counts than are known to wait or run; None until it has been seen."""
-        self.doubting = False
-        self.late_index: int | None = None
-        """What an acknowledgement said that came while it was found out whether it was lost."""
         self.next_poll = self.next_look = now
         self._moved_at, self._place, self._executed = now, (0.0, 0.0, 0.0), 0
         self._job: Job | None = None
@@ -103,14 +100,15 @@ class Conversation:
 
     def hear(self, packet: Packet) -> None:
         """Take a packet from the arm."""
-        values = self.exchange.hear(packet)
+        exchange = self.exchange
+        values = exchange.hear(packet, self.now)
         if values is not None:
             self._resume(values)
         elif (index := acknowledged(packet)) is not None:
-            if self.doubting:
-                self.late_index = index
-            else:
-                self.queue.late(index)
+            is_new = self.count.hears(packet.id, index)
+            if is_new and exchange.awaits_put:
+                exchange.begin(None, self.now)
+                self._resume(None)
 
     def pass_time(self) -> None:
         """The time `now` has come."""
@@ -119,18 +117,18 @@ class Conversation:
             self.go(Turn(Signal.SILENCE, self._silence(), position_known=False))
         elif exchange.overdue(self.now):
             if isinstance(exchange.pending, Ask):
-                exchange.begin(exchange.pending)
+                exchange.again()
             else:
-                exchange.begin(None)
+                exchange.begin(None, self.now)
                 self._resume(None)
         elif self._wait_until is not None and self.now >= self._wait_until:
             self._resume(None)
 
     def deadline(self) -> float | None:
         """When `pass_time` wants to be called again."""
-        if self.events or self.parting or self.exchange.unsent:
+        if self.events or self.parting:
             return self.now
-        times = [at for at in (self.exchange.deadline(), self._wait_until) if at is not None]
+        times = [at for at in (self.exchange.deadline(self.now), self._wait_until) if at is not None]
         return min(times, default=None)
 
     def go(self, turn: Turn) -> None:
@@ -142,14 +140,17 @@ class Conversation:
 
     # -- what scripts tell --
 
-    def renew_queue(self, *, before: int, depth: int | None = None) -> None:
-        """The queue is empty. before: what 246 says; depth: None when it is known."""
-        self.queue = Queue(self.queue.depth if depth is None else depth, before=before)
+    def renew_queue(self, *, before: int, depth: int | None = None, cleared: bool = False) -> None:
+        """The queue is empty. before: what 246 says; depth: None when it is known. cleared: it was emptied just now."""
+        if cleared:
+            self.count = Count()
+        depth = self.queue.depth if depth is None else depth
+        self.queue = Queue(depth, before=before, stale=self.count.last is None)
         self.first_line = None
 
     def read_index(self, said: int) -> None:
         """Take what 246 says. Raises Turn when it has gone back."""
-        if not self.queue.read(said):
+        if not self.queue.read(said) and self.exchange.sure:
             raise Turn(Signal.RESTARTED, sentences.RESTARTED, position_known=False)
         if self.queue.executed != self._executed:
             self._executed, self._moved_at = self.queue.executed, self.now
@@ -202,8 +203,8 @@ class Conversation:
     # -- the states --
 
     def _enter(self, turn: Turn) -> None:
-        self.exchange.begin(None)
-        self._wait_until, self._script, self.doubting = None, None, False
+        self.exchange.begin(None, self.now)
+        self._wait_until, self._script = None, None
         if enter := _ENTER.get(self.state):
             enter(self, turn)
         if script := _SCRIPTS.get(self.state):
@@ -224,7 +225,7 @@ class Conversation:
             if isinstance(request, Wait):
                 self._wait_until = request.until
             else:
-                self.exchange.begin(request)
+                self.exchange.begin(request, self.now)
 
     def _enter_ready(self, _: Turn) -> None:
         if self._job is None:

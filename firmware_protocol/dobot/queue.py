@@ -1,6 +1,8 @@
-"""The arm's queue as the host knows it: what was acknowledged, what of it is executed, and what there is room for."""
+"""The arm's queue as the host knows it: what is in it, what of it is executed, and what there is room for."""
 
 from __future__ import annotations
+
+from bisect import bisect_right, insort
 
 from firmware_protocol.dobot.commands import NONE_YET
 
@@ -10,96 +12,72 @@ SPARE = 2
 
 
 class Queue:
-    """From one clearing to the next. An index is never computed: it comes from acknowledgements, compared with `>=`.
+    """From one clearing to the next. Indices come from acknowledgements and are compared with `>=`.
 
-    depth: places, as the arm has stated. before: what 246 said when the queue was empty; an arm that begins its
-    indices anew may go on to say it until something new is executed.
+    depth: places, as the arm has stated. before: what 246 said when the queue was empty. stale: an arm that begins
+    its indices anew may go on to say it until something new is executed.
     """
 
-    def __init__(self, depth: int, *, before: int) -> None:
+    def __init__(self, depth: int, *, before: int, stale: bool) -> None:
         self.depth = depth or USUAL_DEPTH
-        self._said = before
-        self._stale = True
-        self._entries: list[int | None] = []
-        """The index of each command in its order; None where the acknowledgement was lost."""
-        self._top = -1
-        """The highest index that is known."""
-        self._gone = self._known_gone = 0
-        """How many of the entries are executed as far as is known, and how many of these have an index."""
-        self.unknown = 0
-        """Commands whose acknowledgement was lost, so that their index is not known."""
+        self._said = _executed(before)
+        self.stale = stale
+        """What 246 has said so far may not be about this queue."""
+        self._lines: list[int] = []
+        """Indices of the commands that something waits for."""
+        self._waits: list[int] = []
+        """Indices of those that only tell how far the arm counts."""
 
     @property
     def accepted(self) -> int:
-        """Commands that are or were in the queue."""
-        return len(self._entries)
+        """Commands that are or were in the queue, without those that only tell how far the arm counts."""
+        return len(self._lines)
 
     @property
     def executed(self) -> int:
-        """How many commands are certainly executed.
-
-        As many as there are known indices up to the last executed one, whichever commands they belong to, and one
-        more where that one is higher than all of them.
-        """
-        beyond = self.unknown > 0 and not self._stale and self._said > self._top
-        return self._known_gone + beyond
+        """How many of them are certainly executed."""
+        return self._up_to_now(self._lines)
 
     @property
     def ahead(self) -> int:
-        """Commands that wait or run, as far as is known."""
-        return self.accepted - self._gone
+        """Commands of both kinds that wait or run."""
+        return sum(len(indices) - self._up_to_now(indices) for indices in (self._lines, self._waits))
 
-    @property
-    def room(self) -> bool:
-        """Whether one more may be sent."""
-        return self.ahead < max(1, self.depth - SPARE)
+    def room(self, loose: int) -> bool:
+        """Whether one more may be sent. loose: commands of which it is not known whether they are in the queue."""
+        return self.ahead + loose < max(1, self.depth - SPARE)
 
-    def accept(self, index: int | None) -> None:
-        """One more is in the queue; None: its acknowledgement was lost."""
-        self._entries.append(index)
-        self._top = max(self._top, -1 if index is None else index)
-        self.unknown += index is None
+    def accept(self, index: int) -> None:
+        """A command is in the queue."""
+        insort(self._lines, index)
 
-    def late(self, index: int) -> None:
-        """An acknowledgement came that nobody waits for any more: one index more is known."""
-        if not self.unknown:
-            return
-        self.unknown -= 1
-        self._entries.remove(None)
-        later = (at for at, entry in enumerate(self._entries) if entry is not None and entry > index)
-        self._entries.insert(next(later, len(self._entries)), index)
-        self._top = max(self._top, index)
-        self._gone = self._known_gone = 0
-        self._count()
+    def accept_wait(self, index: int) -> None:
+        """A command is in the queue that only tells how far the arm counts."""
+        insort(self._waits, index)
+
+    def begins_anew(self, index: int) -> bool:
+        """Whether the arm counts from the beginning, now that the first command has this index."""
+        self.stale = self.stale and index <= self._said
+        return self.stale
+
+    def is_told_apart(self, index: int) -> bool:
+        """Whether 246 can say this index and not mean the one that it said before."""
+        return index != self._said
 
     def read(self, said: int) -> bool:
-        """Take what 246 says. Returns False when it has gone back: then the arm has restarted."""
-        if self._stale and (said == self._said or _none(said)):
+        """Take what 246 says. Returns False when it has gone back: the arm has restarted, or that was said before."""
+        executed = _executed(said)
+        if self.stale and executed == self._said:
             return True
-        went_back = not self._stale and (_none(said) or said < self._said)
-        self._said, self._stale = said, False
-        self._count()
-        return not went_back
+        if not self.stale and executed < self._said:
+            return False
+        self._said, self.stale = executed, False
+        return True
 
-    def left_over(self, left: int) -> int:
-        """How many more commands are in the queue than is known, when 247 says `left`."""
-        return self.depth - left - self.ahead
-
-    def _count(self) -> None:
-        """All up to the last command whose index has been reached, and a lost one that only a higher index can be."""
-        if self._stale:
-            return
-        last = self._gone
-        for at in range(self._gone, len(self._entries)):
-            entry = self._entries[at]
-            if entry is not None and entry > self._said:
-                return
-            if entry is not None:
-                last = self._gone = at + 1
-                self._known_gone += 1
-        if self._said > self._top:
-            self._gone = max(self._gone, min(len(self._entries), last + 1))
+    def _up_to_now(self, indices: list[int]) -> int:
+        return 0 if self.stale else bisect_right(indices, self._said)
 
 
-def _none(said: int) -> bool:
-    return said in (0, NONE_YET)
+def _executed(said: int) -> int:
+    """Below every index where nothing is executed yet."""
+    return -1 if said in (0, NONE_YET) else said

@@ -16,7 +16,6 @@ from firmware_protocol.dobot.steps import (
     Turn,
     Wait,
     at_once,
-    learn_left_over,
     look_for_alarms,
     poll,
     put,
@@ -33,8 +32,6 @@ REST_S = 1.0
 """Between two looks at the alarms while nothing is drawn."""
 FEEDING_S = 0.075
 """So much later it is asked how far the queue is while there are lines to send and room for them."""
-EMPTY_WITHIN_S = 10.0
-"""For the last command, in any case a way with the pen up, to leave the queue."""
 NEAR_MM = 0.05
 """So near to its target the arm has reached it."""
 
@@ -52,7 +49,7 @@ def introduce(talk: Conversation) -> Script:
     yield Ask(at_once("StartExec"))
     (index,) = yield Ask(question("CurrentIndex"))
     (left,) = yield Ask(question("LeftSpace"))
-    talk.renew_queue(before=index, depth=left)
+    talk.renew_queue(before=index, depth=left, cleared=True)
     yield from _lift(talk)
     raise Turn(Signal.HOME if talk.habits.home else Signal.COMPLETE)
 
@@ -83,7 +80,7 @@ def draw(talk: Conversation) -> Script:
     talk.first_line = job.taken - talk.queue.accepted
     talk.progressed()
     while not (job.fed and talk.queue.ahead == 0):
-        may_feed = talk.queue.room and not job.fed
+        may_feed = talk.queue.room(len(talk.count.open)) and not job.fed
         # On a slow way the line that can be sent goes before the question how far the arm is.
         if talk.now >= talk.next_poll + (FEEDING_S if may_feed else 0.0):
             yield from poll(talk)
@@ -91,7 +88,6 @@ def draw(talk: Conversation) -> Script:
             yield from _feed(talk)
         else:
             yield Wait(talk.next_poll)
-    yield from _empty(talk)
     yield from _lift(talk)
     raise Turn(Signal.COMPLETE if job.taken == len(job) else Signal.STAND)
 
@@ -114,7 +110,7 @@ def abort(talk: Conversation) -> Script:
         raise Turn(Signal.OVER)
     if job.verdict is Verdict.ALARM:
         yield Ask(at_once("Alarms"))
-        yield from look_for_alarms()
+        yield from look_for_alarms(late=False)
     yield Ask(at_once("StartExec"))
     yield from _lift(talk)
     raise Turn(Signal.COMPLETE if job.verdict in {Verdict.STOPPED, Verdict.REJECTED} else Signal.OVER)
@@ -134,7 +130,7 @@ def _halt(talk: Conversation) -> Generator[Ask, Any, Vector]:
         job.executes(said)
         if job.executed > before and not _is_at((x, y, z), job.commands[job.executed - 1]):
             job.executed -= 1
-    talk.renew_queue(before=index)
+    talk.renew_queue(before=index, cleared=True)
     return x, y, z
 
 
@@ -143,16 +139,6 @@ def _is_at(place: Vector, reached: Command) -> bool:
         return True
     target = [float(value) for value in reached.values[1:4]]
     return math.dist(place, target) <= NEAR_MM
-
-
-def _empty(talk: Conversation) -> Script:
-    """Where an acknowledgement was lost it is not certain to which command the last index belongs: wait for 247."""
-    until = talk.now + EMPTY_WITHIN_S
-    while talk.queue.unknown and (yield Ask(question("LeftSpace")))[0] < talk.queue.depth:
-        if talk.now >= until:
-            raise Turn(Signal.STUCK, sentences.stuck(EMPTY_WITHIN_S, len(talk.job)))
-        yield from poll(talk)
-        yield Wait(talk.next_poll)
 
 
 def _back_to_the_cut(talk: Conversation) -> Script:
@@ -183,8 +169,6 @@ def _put_move(talk: Conversation, place: Vector) -> Script:
 
 def _feed(talk: Conversation) -> Script:
     job, line = talk.job, talk.job.taken
-    if talk.usually_left_over is None and talk.queue.ahead:
-        yield from learn_left_over(talk)
     talk.lifted = False
     job.sends()
     yield from put(talk, job.commands[line], job.text(line), number=line + 1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from firmware_protocol.dobot import alarms, commands, sentences
 from firmware_protocol.dobot.commands import Command, Value, Values, command, question
+from firmware_protocol.dobot.count import Sent
 from firmware_protocol.dobot.exchange import Ask, Put
 from firmware_protocol.dobot.packet import Packet
 from firmware_protocol.dobot.states import Signal
@@ -39,68 +40,71 @@ POLL_S = 0.025
 """Between two questions how far the queue is."""
 LOOK_S = 0.4
 """Between two questions for alarms and place."""
-SAMPLES = 6
+TRIES = 4
+"""So often the arm is asked to wait before it counts as not counting."""
+_SHORTLY = command("WAIT", 1)
+"""Done once or several times it changes nothing, and its index tells how many commands the arm has taken before."""
 
 
 def put(talk: Conversation, written: Command, text: str, number: int | None = None) -> Script:
     """Put it into the queue; number: of its line from 1. Sent again only when it certainly has not been taken."""
+    if talk.count.last is None:
+        yield from _learn_count(talk)
+    if written.kind.name == _SHORTLY.kind.name:
+        talk.queue.accept((yield from _wait(talk, written)))
+        return
     for _ in range(2):
-        reply: tuple[int] | None = yield Put(written.packet())
-        if reply is not None:
-            talk.queue.accept(reply[0])
-            return
-        taken = yield from _was_taken(talk, harmless=_is_harmless(written))
-        if taken is None:
+        sent = talk.count.sends(written.kind.id)
+        yield Put(written.packet())
+        yield from _find_out(talk, sent)
+        if not sent.settled:
             why = sentences.doubtful(number, text) if number else sentences.refused_command(text)
             raise Turn(Signal.DOUBT, why)
-        if taken:
+        if sent.index is not None:
+            talk.queue.accept(sent.index)
             return
     raise Turn(Signal.REFUSED, sentences.refused(number, text) if number else sentences.refused_command(text))
 
 
-def _is_harmless(written: Command) -> bool:
-    """Done twice it does the same as done once: a setting, or a move to a place that it states."""
-    mode = written.values[0] if written.values else None
-    relative = (written.kind.name == "CP" and mode != commands.ABSOLUTE) or (
-        written.kind.name == "PTP" and mode not in commands.PTP_TO_A_PLACE
-    )
-    return not relative and written.kind.name != "WAIT"
+def _find_out(talk: Conversation, sent: Sent) -> Script:
+    """Whether a command whose acknowledgement is missing is in the queue: by the indices of commands behind it."""
+    for _ in range(TRIES):
+        if not sent.settled:
+            yield from look_for_alarms()
+        if sent.settled:
+            return
+        shortly = talk.count.sends(_SHORTLY.kind.id)
+        yield Put(_SHORTLY.packet())
+        if shortly.index is not None:
+            talk.queue.accept_wait(shortly.index)
 
 
-def _was_taken(talk: Conversation, *, harmless: bool) -> Generator[Ask, Any, bool | None]:
-    """Whether a command whose acknowledgement is missing is in the queue, by 247 and 246, twice; None: not clear.
-
-    Before it is known whether this arm counts the running command, only what is harmless is taken for missing.
-    """
-    talk.late_index = None
-    talk.doubting = True
-    yield from look_for_alarms()
-    more = []
-    for _ in range(2):
-        more.append((yield from _left_over(talk)))
-    talk.doubting = False
-    if talk.late_index is not None:
-        talk.queue.accept(talk.late_index)
-        return True
-    usual = talk.usually_left_over
-    if more[0] is None or more[0] != more[1]:
-        return None
-    if more[0] == (usual or 0) + 1:
-        talk.queue.accept(None)
-        return True
-    return False if more[0] == usual or (usual is None and harmless and more[0] in {-1, 0}) else None
+def _wait(talk: Conversation, written: Command) -> Generator[Ask | Put, Any, int]:
+    """Have the arm wait, asked again until it says an index, which is returned. It may wait more than once."""
+    before = talk.count.top
+    for _ in range(TRIES):
+        talk.count.sends(written.kind.id)
+        yield Put(written.packet())
+        top = talk.count.top
+        if top is not None and top != before:
+            return top
+        yield from look_for_alarms()
+    raise Turn(Signal.REFUSED, sentences.refused_command(commands.text_of(written)))
 
 
-def _left_over(talk: Conversation) -> Generator[Ask, Any, int | None]:
-    """Commands in the queue beyond those that are known; None when it never stood still while that was asked."""
-    for _ in range(SAMPLES):
-        (before,) = yield Ask(question("CurrentIndex"))
-        (left,) = yield Ask(question("LeftSpace"))
-        (after,) = yield Ask(question("CurrentIndex"))
-        talk.read_index(after)
-        if before == after:
-            return talk.queue.left_over(left)
-    return None
+def _learn_count(talk: Conversation) -> Script:
+    """Where the arm's count stands after its queue was emptied, and until 246 speaks of this queue."""
+    talk.progressed()
+    late_until = talk.exchange.late_puts_until(talk.now)
+    if late_until > talk.now:
+        yield Wait(late_until)
+    index = yield from _wait(talk, _SHORTLY)
+    while talk.queue.begins_anew(index) and not talk.queue.is_told_apart(index):
+        index = yield from _wait(talk, _SHORTLY)
+    talk.queue.accept_wait(index)
+    while talk.queue.stale:
+        yield from poll(talk)
+        yield Wait(talk.next_poll)
 
 
 def settle(talk: Conversation) -> Script:
@@ -112,7 +116,7 @@ def settle(talk: Conversation) -> Script:
 
 def poll(talk: Conversation) -> Script:
     """How far the queue is, and from time to time alarms and place."""
-    (index,) = yield Ask(question("CurrentIndex"))
+    (index,) = yield Ask(question("CurrentIndex"), late=True)
     talk.read_index(index)
     talk.next_poll = talk.now + POLL_S
     if talk.now >= talk.next_look:
@@ -122,23 +126,15 @@ def poll(talk: Conversation) -> Script:
 
 def _look(talk: Conversation) -> Script:
     yield from look_for_alarms()
-    x, y, z, *_ = yield Ask(question("Pose"))
+    x, y, z, *_ = yield Ask(question("Pose"), late=True)
     talk.seen_at((x, y, z))
     talk.events.append(Status(talk.state.name.capitalize(), talk.on_sheet((x, y, z))))
     talk.check_progress()
-    yield from learn_left_over(talk)
 
 
-def learn_left_over(talk: Conversation) -> Script:
-    """By how much 247 differs from what is known while something runs: some arms count the running command."""
-    left_over = yield from _left_over(talk)
-    if left_over is not None and talk.queue.ahead and not talk.queue.unknown:
-        talk.usually_left_over = left_over
-
-
-def look_for_alarms() -> Generator[Ask, Any, None]:
-    """Raises Turn when there are any."""
-    reply: Values = yield Ask(question("Alarms"))
+def look_for_alarms(*, late: bool = True) -> Generator[Ask, Any, None]:
+    """Raises Turn when there are any. late: an answer of before will do."""
+    reply: Values = yield Ask(question("Alarms"), late)
     mask: Value = reply[0]
     active = alarms.codes(mask) if isinstance(mask, bytes) else ()
     if alarms.RESET in active:

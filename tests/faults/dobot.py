@@ -44,14 +44,17 @@ class Moment:
 
 
 Made: TypeAlias = Callable[[Moment], tuple[Fault, ...]]
+BEFORE = 1
+"""Commands for the queue before the first line: the arm is asked to wait."""
 FAULTS: dict[str, Made] = {
-    "reply dropped": lambda moment: (DropReply(moment.line),),
+    "reply dropped": lambda moment: (DropReply(moment.line + BEFORE),),
     "replies to questions dropped": lambda moment: tuple(DropReply(moment.line + k, answers=True) for k in range(4)),
-    "reply 2 s late": lambda moment: (DelayReply(moment.line, by_s=2.0),),
-    "reply corrupt": lambda moment: (CorruptReply(moment.line),),
-    "stray AA": lambda moment: (StrayByte(moment.line),),
-    "command corrupt": lambda moment: (CorruptRequest(moment.line),),
-    "command corrupt twice": lambda moment: (CorruptRequest(moment.line), CorruptRequest(moment.line + 1)),
+    "reply 2 s late": lambda moment: (DelayReply(moment.line + BEFORE, by_s=2.0),),
+    "reply corrupt": lambda moment: (CorruptReply(moment.line + BEFORE),),
+    "stray AA": lambda moment: (StrayByte(moment.line + BEFORE),),
+    "command corrupt": lambda moment: (CorruptRequest(moment.line + BEFORE),),
+    # Between the two the arm is asked to wait, which tells that it has not taken the first.
+    "command corrupt twice": lambda moment: tuple(CorruptRequest(moment.line + BEFORE + k) for k in (0, 2)),
     "port closed": lambda moment: (ClosePort(at_s=moment.at_s),),
     "power cut": lambda moment: (PowerCut(at_s=moment.at_s),),
     "hang": lambda moment: (Hang(at_s=moment.at_s),),
@@ -61,7 +64,7 @@ FAULTS: dict[str, Made] = {
 }
 
 _SIGNS = {
-    "command corrupt twice": "no acknowledgement, and 247 and 246 unchanged",
+    "command corrupt twice": "no acknowledgement, and no gap in the indices",
     "port closed": "end of the file",
     "power cut": "no answer, then alarm 0x00",
     "hang": "no answer",
@@ -119,8 +122,8 @@ def _moments(bench: Bench) -> list[Moment]:
     began: dict[int, float] = {}
     bench.ready().start(_lines())
     while not bench.over:
-        # The indices of this arm begin with 1, so so many lines are executed.
-        began.setdefault(bench.sim.arm.executed, bench.now)
+        # The indices of this arm begin with 1, so so many commands are executed.
+        began.setdefault(bench.sim.arm.executed - BEFORE, bench.now)
         bench.turn(bench.now + 1)
     return [Moment(name, _middle_s(began, line), line) for name, line in wanted.items()]
 

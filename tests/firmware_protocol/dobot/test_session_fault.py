@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import cycle
-
 import pytest
 
+from firmware_protocol.dobot.commands import Command
 from firmware_protocol.dobot.packet import PacketReader
-from firmware_protocol.dobot.simulator.arm import Build
+from firmware_protocol.dobot.simulator.arm import Arm, Build
 from firmware_protocol.dobot.simulator.faults import (
     ClosePort,
     CorruptReply,
@@ -22,25 +21,28 @@ from firmware_protocol.dobot.simulator.faults import (
     StrayByte,
 )
 from firmware_protocol.dobot.states import State
+from firmware_protocol.dobot.steps import TRIES
 from firmware_protocol.session import Ended, Verdict
 from tests.firmware_protocol.dobot.bench import Bench, Line, stroke, strokes
 from tests.firmware_protocol.dobot.test_session_job import rounded, whole
 
 LINES = strokes(3)
-LAST = len(LINES) - 1
+BEFORE = 1
+"""Commands for the queue before the first line: the arm is asked to wait, which tells where its count stands."""
+LAST = len(LINES) - 1 + BEFORE
 
 
 def bench_with(*faults: Fault, build: Build | None = None) -> Bench:
-    """The faults count the commands of the job: nothing is queued before."""
+    """The faults count the commands for the queue: BEFORE of them, and then those of the job."""
     bench = Bench(arm={"faults": faults, "build": build or Build()})
     bench.draw(LINES)
     return bench
 
 
 def queued(bench: Bench) -> int:
-    """Commands for the queue that were sent."""
+    """Commands for the queue that were sent, but for those that only wait."""
     packets = PacketReader().feed(b"".join(data for _, data in bench.sent))
-    return sum(packet.queued for packet in packets)
+    return sum(packet.queued and packet.id != 110 for packet in packets)
 
 
 @pytest.mark.parametrize("number", [0, 3, 17, 20, 33, LAST])
@@ -52,8 +54,7 @@ def test_a_command_is_neither_lost_nor_drawn_twice(
     bench = bench_with(fault(number), build=build)
     assert bench.ended.verdict is Verdict.FINISHED
     assert rounded(bench.sim.ink) == whole(3)
-    if number > 0:  # of the very first one it is not known yet what 247 counts
-        assert bench.sim.arm.accepted == len(LINES)
+    assert queued(bench) == len(LINES) + (fault is CorruptRequest and number >= BEFORE)
 
 
 @pytest.mark.parametrize("number", [3, 20, LAST])
@@ -80,7 +81,8 @@ def test_several_faults_of_the_wire_in_a_job_are_got_over() -> None:
 
 
 def test_a_command_that_is_never_taken_is_sent_twice_and_ends_the_job() -> None:
-    bench = bench_with(CorruptRequest(20), CorruptRequest(21))
+    # Between the two the arm is asked to wait, which tells that it has not taken the first.
+    bench = bench_with(CorruptRequest(20 + BEFORE), CorruptRequest(22 + BEFORE))
     end = bench.ended
     assert (end.verdict, end.position_known, end.pen_lifted) == (Verdict.REJECTED, True, True)
     assert "line 21 ('CP 1 " in end.why
@@ -88,18 +90,42 @@ def test_a_command_that_is_never_taken_is_sent_twice_and_ends_the_job() -> None:
     assert bench.session.state is State.READY
 
 
-@pytest.mark.parametrize("tells", [[3], [3, 5, 8, 4, 9, 6]], ids=["always the same", "always another"])
-def test_where_247_tells_nothing_the_command_is_not_sent_again(
-    tells: list[int], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    bench = Bench(arm={"faults": [DropReply(20)]}).ready().start(LINES)
-    bench.until(lambda: bench.sim.acks == 20)
-    left = cycle(tells)
-    monkeypatch.setattr(type(bench.sim.arm), "left", property(lambda arm: next(left)))
-    bench.until(lambda: bench.over)
+def test_where_no_index_tells_the_command_is_not_sent_again() -> None:
+    bench = bench_with(*(DropReply(20 + BEFORE + k) for k in range(TRIES + 1)))
     end = bench.ended
     assert (end.verdict, end.pen_lifted) == (Verdict.SILENT, True)
     assert "acknowledgement of line 21" in end.why
+    assert queued(bench) == 22  # the last one lifts the pen
+
+
+def test_an_arm_that_does_not_count_by_one_draws_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = bench_by_three(monkeypatch)
+    assert bench.ended.verdict is Verdict.FINISHED
+    assert rounded(bench.sim.ink) == whole(3)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 20, LAST])
+@pytest.mark.parametrize("fault", [DropReply, CorruptRequest])
+def test_an_arm_that_does_not_count_by_one_is_not_trusted_with_a_gap(
+    fault: type[DropReply | CorruptRequest], number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = bench_by_three(monkeypatch, fault(number))
+    end = bench.ended
+    assert end.verdict is Verdict.SILENT
+    assert "acknowledgement of line" in end.why
+
+
+def bench_by_three(monkeypatch: pytest.MonkeyPatch, *faults: Fault) -> Bench:
+    """The arm's indices rise by three."""
+    enqueue = Arm.enqueue
+
+    def by_three(arm: Arm, command: Command) -> int | None:
+        index = enqueue(arm, command)
+        arm._next_index += 2
+        return index
+
+    monkeypatch.setattr(Arm, "enqueue", by_three)
+    return bench_with(*faults)
 
 
 def test_an_alarm_of_planning_is_named_and_the_pen_lifted() -> None:
