@@ -25,9 +25,9 @@ class DobotSession:
 
     Lines of a job are commands as text (`commands.parse`), all for the arm's queue. At most two places less than the
     arm states are filled; what is executed is what 246 says, by `>=`. A command without acknowledgement is sent again
-    only when the index of a later one says that it was not taken (`count.Count`). An alarm ends the job, is named with its remedy, and is
-    cleared only where the arm still knows its place, to lift the pen. After every end but FINISHED, STOPPED and
-    REJECTED the session is over: open the port again. Nothing of this has been tried on an arm.
+    only when the index of a later one says that it was not taken (`count.Count`). An alarm ends the job, is named with
+    its remedy, and is cleared only where the arm still knows its place, to lift the pen. After every end but FINISHED,
+    STOPPED and REJECTED the session is over: open the port again. Nothing of this has been tried on an arm.
     """
 
     def __init__(
