@@ -23,6 +23,16 @@ Points: TypeAlias = "NDArray[np.float64]"
 """(N, 2) float64, one (x, y) a row."""
 Affine: TypeAlias = "NDArray[np.float64]"
 """(2, 3) float64: q = A[:, :2] @ p + A[:, 2]."""
+Homography: TypeAlias = "NDArray[np.float64]"
+"""(3, 3) float64: (u, v, w) = H @ (x, y, 1), q = (u / w, v / w)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """Something that was done to a page, in a few words, and the page after it, small enough to be kept."""
+
+    words: str
+    small: Grey
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +40,7 @@ class PageImage:
     """A page as the rooms see it: upright, dark ink on light paper, bounded in size."""
 
     grey: Grey
-    to_given: Affine
+    to_given: Homography
     """Page px to px of the given picture (upright, as a viewer shows it)."""
     given_width_px: int
     given_height_px: int
@@ -40,6 +50,10 @@ class PageImage:
     """Full width of the pen line on this page, where it has been estimated."""
     px_per_mm: float | None = None
     """Of the given picture, where its file states a resolution."""
+    steps: tuple[Step, ...] = ()
+    """What was done to it, in order; empty for a page on which nothing had to be put right."""
+    warnings: tuple[str, ...] = ()
+    """What of it lies outside the range that is worked in, in plain words."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

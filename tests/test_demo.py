@@ -38,7 +38,7 @@ def drawn_job(settings: Settings) -> Seen:
     # The box is 64 mm wide at (25, 25); the page fills its middle, its upper edge 16 mm below the box's.
     ink_mm = [[25 + 0.5 * 10.5, 89 - 16 - 0.5 * 20.5], [25 + 0.5 * 110.5, 89 - 16 - 0.5 * 20.5]]
     (folder / "ink.json").write_text(json.dumps({"strokes": [ink_mm]}))
-    page = PageImage(grey, np.eye(2, 3), 128, 64, "")
+    page = PageImage(grey, np.eye(3), 128, 64, "")
     from_px = placement(128, 64, Layout(settings.sheet.box_mm, settings.sheet.box_origin_mm))
     toolpath = Toolpath((Stroke(LINE),), from_px)
     figures = Fidelity(1.0, 0.9, 0.947, 0.8)

@@ -125,4 +125,4 @@ def _blurred(field: Field, sigma_px: float) -> Field:
 
 def _page(grey: NDArray[np.uint8]) -> PageImage:
     height_px, width_px = grey.shape
-    return PageImage(grey, np.eye(2, 3), width_px, height_px, sha256="")
+    return PageImage(grey, np.eye(3), width_px, height_px, sha256="")

@@ -142,7 +142,7 @@ class Sketch:
     def __init__(self, strokes: Sequence[NDArray[np.float32]], segmenter: Segmenter) -> None:
         grey = np.asarray(255 - reference(strokes).ink, np.uint8)
         self.known = known_lines(fit(strokes, CANVAS_PX, SKETCH_PX))
-        self.page = PageImage(grey, np.eye(2, 3), CANVAS_PX, CANVAS_PX, "", line_width_px=float(LINE_PX))
+        self.page = PageImage(grey, np.eye(3), CANVAS_PX, CANVAS_PX, "", line_width_px=float(LINE_PX))
         self.maps = segmenter.segment(self.page)
         self.alone = Alone(self.page, self.maps)
 

@@ -37,7 +37,7 @@ def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> Page
     height_px, width_px = grey.shape
     return PageImage(
         grey=grey,
-        to_given=np.eye(2, 3),
+        to_given=np.eye(3),
         given_width_px=width_px,
         given_height_px=height_px,
         sha256=hashlib.sha256(data).hexdigest(),

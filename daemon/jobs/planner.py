@@ -29,8 +29,9 @@ from daemon.jobs.devices import program_of, seconds_of
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
+from daemon.page.back import given_px, on_given
 from daemon.page.line_width import fit_line_width
-from daemon.page.prepare import even_out
+from daemon.page.prepare import put_right
 from daemon.program.file import program_text
 from daemon.program.svg import write_svg
 from daemon.report import canvas
@@ -38,7 +39,7 @@ from daemon.report.explain import explain
 from daemon.report.fidelity import Fidelity, fidelity, line_width_px
 from daemon.report.preview import preview
 from daemon.report.report import executed_report, from_json, planned_report, to_json
-from daemon.shapes import Affine, Drawing, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
+from daemon.shapes import Affine, Drawing, Homography, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
 from daemon.toolpath.place import Layout, invert, place
 from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
@@ -64,17 +65,17 @@ def plan_picture(
     with stages("decode"):
         given = decode(source, max_megapixels=settings.intake.max_megapixels, name=name)
     with stages("page"):
-        readable = even_out(given)
+        readable = put_right(given)
         page = fit_line_width(readable)
     with stages("vision"):
         segmentation = segmenter(settings.planning.threads).segment(page)
     with stages("graph"):
         graph = _graph(page, segmentation, folder, settings)
         on_page = _strokes(graph, page, settings)
-        drawing = on_given(on_page, page)
+        drawing, upright = drawing_on_given(on_page, page), drawing_on_readable(on_page, page, readable)
     with stages("toolpath"):
         scanned = is_scan(Path(name).name)
-        toolpath = _toolpath(drawing, page, settings, settings.machines[machine], scanned=scanned)
+        toolpath = _toolpath(upright, page, readable, settings, settings.machines[machine], scanned=scanned)
     with stages("program"):
         told_to_it = told(toolpath, settings.sheet, settings.machines[machine])
         program = program_of(told_to_it, settings.machines[machine], folder.name)
@@ -84,7 +85,7 @@ def plan_picture(
         width_px = line_width_px(readable.grey)
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
         planned = planned_report(
-            page, graph, toolpath, found,
+            (readable, page), graph, toolpath, found,
             line_width_px=width_px, estimated_s=estimated_s, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb(),
         )  # fmt: skip
     write_durably(folder / "strokes.json", _strokes_json(drawing))
@@ -100,7 +101,7 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     source = source_of(folder)
     if source is None:
         raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
-    readable = even_out(decode(source, max_megapixels=settings.intake.max_megapixels))
+    readable = put_right(decode(source, max_megapixels=settings.intake.max_megapixels))
     drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
     found = _fidelity_mm(readable, drawn, np.array(planned.from_px), line_width_px(readable.grey))
     executed = executed_report(planned, found, real_s=planned.real_s or 0.0)
@@ -128,10 +129,21 @@ def segmenter(threads: int) -> Segmenter:
     return Segmenter(threads=threads)
 
 
-def on_given(drawing: Drawing, page: PageImage) -> Drawing:
-    """The same strokes in px of the given picture."""
-    moved = tuple(replace(stroke, points=place(stroke.points, page.to_given)) for stroke in drawing.strokes)
-    return Drawing(moved, page.given_width_px, page.given_height_px, page.px_per_mm)
+def drawing_on_given(drawing: Drawing, page: PageImage) -> Drawing:
+    """The same strokes in px of the given picture, however its sheet lies in it."""
+    size_px = page.given_width_px, page.given_height_px
+    return Drawing(_moved(drawing, page.to_given), *size_px, page.px_per_mm)
+
+
+def drawing_on_readable(drawing: Drawing, page: PageImage, readable: PageImage) -> Drawing:
+    """The same strokes in px of the page that was put right, before it was scaled: as they are drawn and measured."""
+    height_px, width_px = readable.grey.shape
+    back = np.linalg.inv(readable.to_given) @ page.to_given
+    return Drawing(_moved(drawing, back), width_px, height_px, readable.px_per_mm)
+
+
+def _moved(drawing: Drawing, to: Homography) -> tuple[Stroke, ...]:
+    return tuple(replace(stroke, points=on_given(stroke.points, to)) for stroke in drawing.strokes)
 
 
 def _graph(page: PageImage, segmentation: Segmentation, folder: Path, settings: Settings) -> LineGraph:
@@ -150,16 +162,15 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
 
 
 def _toolpath(
-    drawing: Drawing, page: PageImage, settings: Settings, machine: Machine, *, scanned: bool = False
+    drawing: Drawing, page: PageImage, readable: PageImage, settings: Settings, machine: Machine, *, scanned: bool
 ) -> Toolpath:
     sheet = settings.sheet
     true_size = sheet.size == "true" or (sheet.size == "auto" and scanned and page.px_per_mm is not None)
     corner_mm = box_origin_mm(sheet, machine)
-    given_px = float(np.sqrt(abs(np.linalg.det(page.to_given[:, :2]))))
     return plan_toolpath(
         drawing,
         layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, true_size),
-        precision=Precision(sheet.error_mm, _ERROR_PX * given_px, machine.resolution_mm),
+        precision=Precision(sheet.error_mm, _ERROR_PX * given_px(page) / given_px(readable), machine.resolution_mm),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,
         reach_mm=reach_mm(machine),
@@ -186,7 +197,7 @@ def _write_pictures(
 
 
 def _fidelity_mm(readable: PageImage, drawn_mm: list[Points], from_px: Affine, width_px: float) -> Fidelity:
-    """Of lines in machine mm, against the given picture in its own pixels, light and dark put right."""
+    """Of lines in machine mm, against the page that was put right, in its pixels before it was scaled."""
     back = invert(from_px)
     return fidelity(readable, [place(line, back) for line in drawn_mm], line_width_px=width_px)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.page.tones import Tones, tones
-from daemon.shapes import Affine, Grey, PageImage
+from daemon.shapes import Grey, Homography, PageImage
 
 BEST_PX = 2.5
 NARROWEST_PX, WIDEST_PX = 1.8, 3.5
@@ -96,11 +96,9 @@ def _scaled(page: PageImage, scale: float) -> PageImage:
     wide, high = max(1, round(width_px * scale)), max(1, round(height_px * scale))
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
     grey = np.asarray(cv2.resize(page.grey, (wide, high), interpolation=how), np.uint8)
-    return replace(page, grey=grey, to_given=_chained(page.to_given, width_px / wide, height_px / high))
+    return replace(page, grey=grey, to_given=page.to_given @ _back(width_px / wide, height_px / high))
 
 
-def _chained(to_given: Affine, across: float, down: float) -> Affine:
-    """First from the scaled page back to the page, whose pixel edges lie at -0.5, then on to the given picture."""
-    back = np.array([[across, 0.0], [0.0, down]])
-    shift = np.array([(across - 1) / 2, (down - 1) / 2])
-    return np.column_stack([to_given[:, :2] @ back, to_given[:, :2] @ shift + to_given[:, 2]])
+def _back(across: float, down: float) -> Homography:
+    """From the scaled page back to the page, whose pixel edges lie at -0.5."""
+    return np.array([[across, 0.0, (across - 1) / 2], [0.0, down, (down - 1) / 2], [0.0, 0.0, 1.0]])

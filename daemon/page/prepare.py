@@ -14,9 +14,17 @@ def prepare(page: PageImage) -> PageImage:
     page: upright, as `decode` gives it. Returns a page whose `to_given` leads back to the given picture and whose
     `line_width_px` is known where the page holds ink.
     """
-    return fit_line_width(even_out(page))
+    return fit_line_width(put_right(page))
+
+
+def put_right(page: PageImage) -> PageImage:
+    """The sheet alone, upright, evenly lit, without what is no drawing on it: what is drawn and compared with.
+
+    `to_given` leads back to the given picture. A clean page comes back as it is, bit by bit.
+    """
+    return even_out(page)
 
 
 def even_out(page: PageImage) -> PageImage:
-    """Dark ink on light, evenly lit paper, pixel for pixel the given picture: what a drawing is compared with."""
+    """Dark ink on light, evenly lit paper, pixel for pixel the given picture."""
     return flatten_light(turn_dark(page))

@@ -40,15 +40,21 @@ class Report:
     """Seconds of each stage of planning, in order."""
     peak_memory_mb: float
     """Of the planning process, resident."""
+    to_given: Sequence[Sequence[float]]
+    """Px of the page put right, as it is drawn and measured, to px of the given picture: 3 x 3, a homography."""
+    page_steps: Sequence[str]
+    """What was done to put the page right, in order."""
+    warnings: Sequence[str]
+    """What of the picture lies outside the range that is worked in, or was left out, in plain words."""
     from_px: Sequence[Sequence[float]]
-    """Px of the given picture to machine mm: 2 x 3, as in Toolpath."""
+    """Px of the page put right to machine mm: 2 x 3, as in Toolpath."""
     fidelity_of: FidelityOf
     """Which lines were compared with the page: the planned ones or the ink that a simulated machine has kept."""
     fidelity: Fidelity
 
 
 def planned_report(
-    page: PageImage,
+    pages: tuple[PageImage, PageImage],
     graph: LineGraph,
     toolpath: Toolpath,
     fidelity: Fidelity,
@@ -58,7 +64,11 @@ def planned_report(
     stage_s: Mapping[str, float],
     peak_memory_mb: float,
 ) -> Report:
-    """What is known once a job is planned; `fidelity` is that of its planned strokes."""
+    """What is known once a job is planned; `fidelity` is that of its planned strokes.
+
+    pages: the page put right, in whose px it is drawn, and the same scaled to be read.
+    """
+    upright, page = pages
     page_height_px, page_width_px = page.grey.shape
     return Report(
         given_width_px=page.given_width_px,
@@ -77,6 +87,9 @@ def planned_report(
         real_s=None,
         stage_s=dict(stage_s),
         peak_memory_mb=peak_memory_mb,
+        to_given=upright.to_given.tolist(),
+        page_steps=[step.words for step in page.steps],
+        warnings=list(page.warnings),
         from_px=toolpath.from_px.tolist(),
         fidelity_of="planned",
         fidelity=fidelity,

@@ -39,9 +39,9 @@ def test_the_prepared_ink_is_what_was_drawn(sheet: Sheet) -> None:
     page = prepare(decode(HERE / sheet.file))
     near = near_strokes(sheet, true_strokes(sheet))
     y, x = np.nonzero(ink_mask(page.grey))
-    inked = np.rint(np.stack([x, y], axis=1) @ page.to_given[:, :2].T + page.to_given[:, 2]).astype(int)
+    inked = np.rint(np.stack([x, y], axis=1) @ page.to_given[:2, :2].T + page.to_given[:2, 2]).astype(int)
     assert near[inked[:, 1], inked[:, 0]].mean() > 0.995
-    back = np.linalg.inv(np.vstack([page.to_given, [0, 0, 1]]))
+    back = np.linalg.inv(page.to_given)
     along = np.concatenate(true_strokes(sheet))
     column, row = np.rint(along @ back[:2, :2].T + back[:2, 2]).astype(int).T
     assert (cv2.dilate(ink_mask(page.grey).astype(np.uint8), np.ones((3, 3), np.uint8))[row, column]).mean() > 0.995
@@ -59,7 +59,7 @@ def test_the_way_back_keeps_the_size(sheet: Sheet) -> None:
     page = prepare(decode(HERE / sheet.file))
     assert (page.given_width_px, page.given_height_px) == (sheet.side_px, sheet.side_px)
     edge = np.array([page.grey.shape[1] - 0.5, page.grey.shape[0] - 0.5])
-    assert page.to_given[:, :2] @ edge + page.to_given[:, 2] == pytest.approx([sheet.side_px - 0.5] * 2, abs=1e-6)
+    assert page.to_given[:2, :2] @ edge + page.to_given[:2, 2] == pytest.approx([sheet.side_px - 0.5] * 2, abs=1e-6)
 
 
 def test_there_are_at_least_ten_drawings_of_different_sizes() -> None:

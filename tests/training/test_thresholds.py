@@ -36,7 +36,7 @@ def page_of(strokes: list[np.ndarray]) -> tuple[PageImage, Segmentation]:
     """A page and what a network without fault says of it."""
     sample = polylines(strokes, 221)
     lines, corners = ((sample.label == label).astype(np.float32) for label in (LINES, CORNERS))
-    page = PageImage(255 - sample.ink, np.eye(2, 3), 221, 221, "", line_width_px=2.0)
+    page = PageImage(255 - sample.ink, np.eye(3), 221, 221, "", line_width_px=2.0)
     return page, Segmentation(1 - lines - corners, lines, corners)
 
 

@@ -15,7 +15,7 @@ import cv2
 from daemon.graph.interpret import interpret
 from daemon.graph.strokes import strokes
 from daemon.intake.decode import decode
-from daemon.jobs.planner import on_given
+from daemon.jobs.planner import drawing_on_given
 from daemon.page.prepare import prepare
 from daemon.report import canvas
 from daemon.report.explain import explain
@@ -51,7 +51,7 @@ def understood(grey: Grey) -> Understood:
     segmentation, network_ms = _timed(lambda: _segmenter().segment(page))
     graph, graph_ms = _timed(lambda: interpret(page, segmentation))
     on_page, strokes_ms = _timed(lambda: strokes(graph, width_px=page.grey.shape[1], height_px=page.grey.shape[0]))
-    drawing, back_ms = _timed(lambda: on_given(on_page, page))
+    drawing, back_ms = _timed(lambda: drawing_on_given(on_page, page))
     tour = rejoined(order(drawing.strokes, start_mm=_HOME, end_mm=_HOME), start_mm=_HOME, end_mm=_HOME)
     cpu_ms = page_ms + network_ms + graph_ms + strokes_ms + back_ms
     return Understood([stroke.points for stroke in tour], page, segmentation, graph, on_page, cpu_ms, network_ms)

@@ -19,7 +19,7 @@ def page(lines: Lines, *, size: int = 128, width_px: int = 2) -> PageImage:
     for line in lines:
         points = np.rint(np.array(line) * 256).astype(np.int32)
         cv2.polylines(grey, [points], False, 0, width_px, cv2.LINE_AA, 8)
-    return PageImage(grey, np.eye(2, 3), size, size, "")
+    return PageImage(grey, np.eye(3), size, size, "")
 
 
 def channels(drawn: PageImage, corners: Sequence[tuple[float, float]]) -> Segmentation:

@@ -140,13 +140,13 @@ def test_an_edge_between_two_vertices_on_one_place_stays_there() -> None:
 def test_a_single_dark_pixel_is_dirt() -> None:
     grey = np.full((64, 64), 255, np.uint8)
     grey[30, 30] = 0
-    drawn = PageImage(grey, np.eye(2, 3), 64, 64, "")
+    drawn = PageImage(grey, np.eye(3), 64, 64, "")
     assert interpret(drawn, silent(drawn)).edges == ()
 
 
 @pytest.mark.parametrize("tone", [0, 255])
 def test_a_page_of_one_tone_has_no_edge(tone: int) -> None:
-    drawn = PageImage(np.full((64, 64), tone, np.uint8), np.eye(2, 3), 64, 64, "")
+    drawn = PageImage(np.full((64, 64), tone, np.uint8), np.eye(3), 64, 64, "")
     assert interpret(drawn, silent(drawn)).edges == ()
 
 
@@ -187,7 +187,7 @@ def test_twenty_thousand_specks_are_left_out_and_counted() -> None:
     grey[2::6, 2::6] = 0
     grey[2::6, 3::12] = 0
     grey[400:402, 100:800] = 0
-    drawn = PageImage(grey, np.eye(2, 3), 900, 900, "")
+    drawn = PageImage(grey, np.eye(3), 900, 900, "")
     graph = interpret(drawn, silent(drawn))
     assert graph.specks == 150 * 150
     assert len(graph.edges) == 1
@@ -196,7 +196,7 @@ def test_twenty_thousand_specks_are_left_out_and_counted() -> None:
 def test_thousands_of_specks_are_thousands_of_dots() -> None:
     grey = np.full((900, 900), 255, np.uint8)
     grey[::6, ::6] = grey[1::6, ::6] = grey[::6, 1::6] = grey[1::6, 1::6] = 0
-    drawn = PageImage(grey, np.eye(2, 3), 900, 900, "")
+    drawn = PageImage(grey, np.eye(3), 900, 900, "")
     assert len(interpret(drawn, silent(drawn)).edges) == 150 * 150
 
 

@@ -9,7 +9,7 @@ from daemon.shapes import Grey, PageImage
 
 
 def page(grey: Grey) -> PageImage:
-    return PageImage(grey, np.eye(2, 3), grey.shape[1], grey.shape[0], sha256="")
+    return PageImage(grey, np.eye(3), grey.shape[1], grey.shape[0], sha256="")
 
 
 def drawn(*, width_px: float = 2.5, side_px: int = 256, ink: int = 0, paper: int = 255) -> Grey:

@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
+from daemon.page.back import on_given
 from daemon.page.line_width import fit_line_width, line_width_px
-from daemon.shapes import Affine, Grey, PageImage, Points
+from daemon.shapes import Grey, Homography, PageImage, Points
 from tests.daemon.page.pages import drawn, grain, page
 
 
@@ -72,8 +73,7 @@ def middle_of_dot(grey: Grey) -> Points:
 
 
 def to_given(fitted: PageImage, points: Points) -> Points:
-    placed: Points = points @ fitted.to_given[:, :2].T + fitted.to_given[:, 2]
-    return placed
+    return on_given(points, fitted.to_given)
 
 
 @pytest.mark.parametrize(("width", "height"), [(301, 203), (300, 200)])
@@ -87,7 +87,7 @@ def test_the_way_back_leads_to_the_same_place(width: int, height: int, radius: i
 
 
 def test_the_way_back_goes_on_through_what_was_done_before() -> None:
-    before: Affine = np.array([[2.0, 0, 7], [0, 2, 9]])
+    before: Homography = np.array([[2.0, 0, 7], [0, 2, 9], [0, 0, 1]])
     given = page(drawn(width_px=6))
     alone, after = fit_line_width(given), fit_line_width(replace(given, to_given=before))
     corner = np.array([[10.0, 20.0]])

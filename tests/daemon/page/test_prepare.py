@@ -27,7 +27,7 @@ def test_thick_chalk_on_an_unevenly_lit_board_becomes_fine_ink() -> None:
 def test_evening_out_keeps_every_pixel_where_it_is() -> None:
     board = drawn(ink=235, paper=50, width_px=9)
     evened = even_out(page(board))
-    assert np.array_equal(evened.to_given, np.eye(2, 3))
+    assert np.array_equal(evened.to_given, np.eye(3))
     assert overlap(evened.grey, drawn(width_px=9)) > 0.95
 
 

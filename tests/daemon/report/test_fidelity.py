@@ -26,7 +26,7 @@ def inked(*strokes: Points, width_px: float = 3, side_px: int = 200) -> PageImag
 
 
 def page_of(grey: Grey) -> PageImage:
-    return PageImage(grey, np.eye(2, 3), grey.shape[1], grey.shape[0], "")
+    return PageImage(grey, np.eye(3), grey.shape[1], grey.shape[0], "")
 
 
 def judge(page: PageImage, strokes: Sequence[Points], width_px: float = 3.0) -> tuple[float, float, float, float]:

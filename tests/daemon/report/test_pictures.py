@@ -27,7 +27,7 @@ def page_with(*lines: Points) -> PageImage:
     grey = np.full((100, 120), 255, np.uint8)
     for line in lines:
         cv2.polylines(grey, [line.astype(np.int32)], False, 0, 2)
-    return PageImage(grey, np.eye(2, 3), 120, 100, "")
+    return PageImage(grey, np.eye(3), 120, 100, "")
 
 
 def explained(page: PageImage, *strokes: Points, name: str = "house.png") -> Picture:

@@ -18,12 +18,12 @@ PLANNED = Fidelity(precision=1.0, recall=0.98, f1=0.99, iou=0.9, not_drawn=(Plac
 
 
 def example(*, estimated_s: float = 61.25) -> Report:
-    page = PageImage(np.full((120, 160), 255, np.uint8), np.eye(2, 3), 320, 240, "ab12")
+    page = PageImage(np.full((120, 160), 255, np.uint8), np.eye(3), 320, 240, "ab12")
     corners = np.array([[0.0, 0.0], [30.0, 40.0]])
     graph = LineGraph(corners, (Edge(0, 1, corners, 1.0),), specks=7)
     toolpath = Toolpath((Stroke(corners),), np.eye(2, 3), park_mm=(30.0, 0.0))
     return planned_report(
-        page,
+        (page, page),
         graph,
         toolpath,
         PLANNED,

@@ -30,7 +30,7 @@ def page(width: int, height: int, *lines: tuple[int, int, int, int]) -> PageImag
 
 
 def page_of(grey: Grey) -> PageImage:
-    return PageImage(grey, np.eye(2, 3), grey.shape[1], grey.shape[0], "")
+    return PageImage(grey, np.eye(3), grey.shape[1], grey.shape[0], "")
 
 
 def corners(found: Segmentation) -> list[tuple[int, int]]:
