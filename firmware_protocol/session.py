@@ -85,7 +85,10 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A finding about the job that is being begun; `mended`: the session has set it right, as it is allowed to."""
+    """A finding about the job that is being begun; `mended`: the session has set it right, as it is allowed to.
+
+    What was found about the job before and does not keep this one from being drawn is not told again.
+    """
 
     finding: Finding
     mended: bool = False
@@ -195,3 +198,13 @@ class PausableSession(Session, Protocol):
 
     def resume(self, now: float) -> None:
         """Go on after `Paused`, or tell a machine that is `Waiting` to. Raises LocalProtocolError when neither is."""
+
+
+class AdjustableSession(Session, Protocol):
+    """A session that can draw faster or slower in the middle of a job."""
+
+    def set_feed_percent(self, percent: int, now: float) -> None:
+        """Draw the rest of the running job at so many percent of its feeds; the next job begins with 100.
+
+        Raises ValueError outside 10 to 200.
+        """

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from daemon.config import DobotMachine
-from daemon.jobs.moves import DobotMoves
+from daemon.jobs.moves import HOME_DOBOT, DobotMoves, homed_first
 from daemon.machine.open import Conversation, OpenedMachine, Record, open_machine
 from daemon.machine.ports import find_dobot, named
 from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_by
 from daemon.program.dobot import write_dobot
-from daemon.shapes import Program, ProgramLine, Toolpath
+from daemon.shapes import Program, Toolpath
 from firmware_protocol.dobot.session import DobotSession
 from firmware_protocol.dobot.simulator.forecast import line_times_s
 from firmware_protocol.dobot.simulator.options import simulator_from
@@ -20,7 +20,10 @@ from firmware_protocol.ink import PenRule
 from firmware_protocol.session import Event
 from firmware_protocol.simulator import Simulator
 
-HOME = "HOME 0"
+_FEED = (
+    "nobody has documented whether an arm changes the speed of commands that are in its queue: "
+    "stop it, and set another draw_mm_s"
+)
 _TOUCHES_WITHIN_MM = 0.05
 """A simulated pen is on the sheet this far above its height: joint angles are no round numbers."""
 
@@ -34,7 +37,7 @@ def program_of(toolpath: Toolpath, machine: DobotMachine, name: str) -> Program:
         draw_mm_s=machine.draw_mm_s,
         straight=machine.straight,
     )
-    return Program((ProgramLine(HOME), *program.lines), program.strokes) if machine.home == "job" else program
+    return homed_first(program, HOME_DOBOT) if machine.home == "job" else program
 
 
 def times_s(lines: list[str]) -> list[float]:
@@ -62,6 +65,7 @@ def conversation(machine: DobotMachine, *, still: bool) -> Conversation[DobotSes
         lambda session, lines: line_times_s(lines),
         lambda session, program: [f"firmware: {session.firmware}", f"queue: {session.queue_depth} commands"],
         lift=Program((), 0),
+        own_feed=_FEED,
     )
 
 

@@ -29,6 +29,7 @@ from firmware_protocol.session import Ended, Event, Verdict
 from firmware_protocol.simulator import Simulator
 
 _WHOLE = "an EMCO takes whole programs only: move it at its control"
+_FEED = "the feed of an EMCO is overridden at its control: turn the operator's override switch there"
 _PARITY = {"none": "N", "even": "E"}
 
 
@@ -69,6 +70,7 @@ def conversation(machine: EmcoMachine, *, still: bool) -> Conversation[XonXoffSe
         lambda session, program: [
             f"link: {machine.link}, {machine.preset} at {machine.baud} baud; nothing is said back"
         ],
+        own_feed=_FEED,
     )
 
 
@@ -116,6 +118,9 @@ class FileMachine(FileDrop):
 
     def resume(self) -> None:
         raise LinedrawError("a program that was dropped into a folder cannot be paused from here: press START")
+
+    def feed(self, percent: int) -> None:
+        raise LinedrawError(_FEED)
 
 
 def _session(machine: EmcoMachine, now: float) -> XonXoffSession | BlockSession:

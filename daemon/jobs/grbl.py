@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 
 from daemon.config import GrblMachine, ZPenSettings
-from daemon.jobs.moves import GrblMoves
+from daemon.jobs.moves import HOME_GRBL, GrblMoves, homed_first
 from daemon.jobs.pens import pen_of
 from daemon.machine.open import Conversation, OpenedMachine, Record, open_machine
 from daemon.machine.ports import find_grbl, named
@@ -14,7 +14,7 @@ from daemon.machine.serial_port import Framing, adapters
 from daemon.machine.simulated import simulator_of
 from daemon.program.gcode import lift_lines, write_gcode
 from daemon.program.paper import write_paper
-from daemon.shapes import Program, ProgramLine, Toolpath
+from daemon.shapes import Program, Toolpath
 from daemon.usb import inventory
 from firmware_protocol.grbl.habits import Patience
 from firmware_protocol.grbl.sentences import MOTORS_OFF
@@ -24,7 +24,6 @@ from firmware_protocol.grbl.states import State
 from firmware_protocol.ink import PenRule
 from firmware_protocol.session import Event
 
-HOME = "$H"
 _MOTORS_OFF = f"{MOTORS_OFF} with `linedrawd machine home` or `linedrawd machine origin`"
 
 
@@ -33,9 +32,7 @@ def program_of(toolpath: Toolpath, machine: GrblMachine, name: str) -> Program:
         program = write_paper(toolpath, units=machine.units, draw_mm_s=machine.draw_mm_s)
     else:
         program = write_gcode(toolpath, pen=pen_of(machine.pen), draw_mm_s=machine.draw_mm_s)
-    if machine.home != "job":
-        return program
-    return Program((ProgramLine(HOME), *program.lines), program.strokes)
+    return homed_first(program, HOME_GRBL) if machine.home == "job" else program
 
 
 def times_s(lines: list[str]) -> list[float]:
@@ -104,7 +101,7 @@ def conversation(machine: GrblMachine, *, still: bool) -> Conversation[GrblSessi
 
 def _times(lines: Sequence[str], settings: dict[int, float]) -> list[float]:
     """Homing takes no time: nobody knows from where it begins."""
-    skipped = 1 if lines and lines[0] == HOME else 0
+    skipped = 1 if lines and lines[0] == HOME_GRBL else 0
     return [0.0] * skipped + line_times_s(lines[skipped:], settings)
 
 

@@ -15,6 +15,13 @@ from firmware_protocol.dobot.kinematics import Reach
 from firmware_protocol.ink import Vector
 
 PointMm: TypeAlias = tuple[float, float]
+HOME_GRBL, HOME_DOBOT = "$H", "HOME 0"
+"""The line that finds the home of each."""
+
+
+def homed_first(program: Program, home: str) -> Program:
+    """The program with the line before it that finds the machine's home."""
+    return Program((ProgramLine(home), *program.lines), program.strokes)
 
 
 class Moves(Protocol):
@@ -48,7 +55,7 @@ class GrblMoves:
     def home(self) -> Program:
         if self._machine.home == "never":
             raise LinedrawError("homing is switched off in the settings: say home = 'start' in [machines.NAME]")
-        return _program("$H")
+        return _program(HOME_GRBL)
 
     def travel(self, points_mm: Sequence[PointMm]) -> Program:
         return _program(*lift_lines(self._pen), *(f"G0 X{x_mm:.3f} Y{y_mm:.3f}" for x_mm, y_mm in points_mm))
@@ -77,7 +84,7 @@ class DobotMoves:
         self._machine, self._reach = machine, Reach.between(machine.pen.down_mm, machine.pen.up_mm)
 
     def home(self) -> Program:
-        return _program("HOME 0")
+        return _program(HOME_DOBOT)
 
     def travel(self, points_mm: Sequence[PointMm]) -> Program:
         return _program(*(self._to(point, self._machine.pen.up_mm) for point in points_mm))

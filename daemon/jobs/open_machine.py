@@ -16,7 +16,7 @@ Open: TypeAlias = Callable[[Callable[[Event], None], bool], "OpenMachine"]
 
 
 class OpenMachine(Protocol):
-    """A machine whose port is open. Only `stop`, `pause` and `resume` may be called from other threads."""
+    """A machine whose port is open. Only `stop`, `pause`, `resume` and `feed` may be called from other threads."""
 
     @property
     def name(self) -> str:
@@ -64,6 +64,9 @@ class OpenMachine(Protocol):
 
     def resume(self) -> None:
         """Go on with the job. Raises LinedrawError where the machine cannot pause."""
+
+    def feed(self, percent: int) -> None:
+        """Draw at so many percent of the program's feeds, until the job ends. Raises LinedrawError where it cannot."""
 
     def stop(self) -> None:
         """Hold at once, lift the pen, end the job."""

@@ -7,13 +7,22 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Literal, Protocol, TypeAlias, runtime_checkable
+from typing import Protocol, TypeAlias, runtime_checkable
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.machine.recorder import Kind, Recorder
 from daemon.machine.transport import Transport
 from firmware_protocol.errors import LocalProtocolError
-from firmware_protocol.session import Ended, Event, JobLine, NotReady, PausableSession, Ready, Session
+from firmware_protocol.session import (
+    AdjustableSession,
+    Ended,
+    Event,
+    JobLine,
+    NotReady,
+    PausableSession,
+    Ready,
+    Session,
+)
 
 LIFT_WITHIN_S = 30.0
 """For an interrupted job to slow down and lift its pen."""
@@ -37,9 +46,24 @@ class _Pausable(PausableSession, Protocol):
     """Asked of a session before it is paused."""
 
 
+@runtime_checkable
+class _Adjustable(AdjustableSession, Protocol):
+    """Asked of a session before its feeds are overridden."""
+
+
+def obey(session: Session, kind: Kind, value: int | None, now: float) -> None:
+    """Ask a session that can for what a person wants in the middle of a job. Raises LocalProtocolError."""
+    if kind == "pause" and isinstance(session, _Pausable):
+        session.pause(now, at_once=bool(value))
+    elif kind == "resume" and isinstance(session, _Pausable):
+        session.resume(now)
+    elif kind == "feed" and isinstance(session, _Adjustable) and value is not None:
+        session.set_feed_percent(value, now)
+
+
 class Link:
-    """One session on one transport, driven by the thread that calls; only `stop`, `pause`, `resume` and `wake` come
-    from others.
+    """One session on one transport, driven by the thread that calls; only `stop`, `pause`, `resume`, `feed` and `wake`
+    come from others.
 
     heard: is given every event, in order, in the calling thread; it must not call back.
     recorder: writes everything down. turned: called at each turn of the loop, at least every TURN_S.
@@ -62,7 +86,7 @@ class Link:
         self._turned = turned
         self._stop_asked = threading.Event()
         self._woken = threading.Event()
-        self._wishes: deque[tuple[Literal["pause", "resume"], bool | None]] = deque()
+        self._wishes: deque[tuple[Kind, int | None]] = deque()
         self._promise: Promise = promise_nothing
         self._promised, self._unpromised = 0, ""
 
@@ -143,16 +167,26 @@ class Link:
 
     def pause(self, *, at_once: bool) -> None:
         """Stand still with the pen up; `Paused` is heard then. Raises LinedrawError where the session cannot."""
+        self._check_pausable()
         self._wish("pause", at_once)
 
     def resume(self) -> None:
         """Go on, if it stands still. Raises LinedrawError where the session cannot."""
+        self._check_pausable()
         self._wish("resume")
 
-    def _wish(self, kind: Literal["pause", "resume"], at_once: bool | None = None) -> None:
+    def feed(self, percent: int) -> None:
+        """Draw at so many percent of the program's feeds, until the job ends. Raises LinedrawError where it cannot."""
+        if not isinstance(self._session, _Adjustable):
+            raise LinedrawError(f"{self._transport.name} cannot be made faster or slower from here")
+        self._wish("feed", percent)
+
+    def _check_pausable(self) -> None:
         if not isinstance(self._session, _Pausable):
             raise LinedrawError(f"{self._transport.name} cannot be paused from here: use the machine's own feed hold")
-        self._wishes.append((kind, at_once))
+
+    def _wish(self, kind: Kind, value: int | None = None) -> None:
+        self._wishes.append((kind, value))
         self._transport.wake()
 
     def close(self) -> None:
@@ -172,20 +206,17 @@ class Link:
 
     def _do_what_was_asked(self) -> None:
         now = self._transport.now()
-        while self._wishes and isinstance(self._session, _Pausable):
-            kind, at_once = self._wishes.popleft()
-            self._record(now, kind, at_once)
+        while self._wishes:
+            kind, value = self._wishes.popleft()
+            self._record(now, kind, value)
             # What stands still no longer, or never did, has nothing to go on with.
             with suppress(LocalProtocolError):
-                if kind == "pause":
-                    self._session.pause(now, at_once=bool(at_once))
-                else:
-                    self._session.resume(now)
+                obey(self._session, kind, value, now)
         if self._stop_asked.is_set():
             self._record(now, "stop")
             self._session.stop(now)
 
-    def _record(self, now: float, kind: Kind, value: bool | None = None) -> None:
+    def _record(self, now: float, kind: Kind, value: int | None = None) -> None:
         if self._recorder:
             self._recorder.asked(now, kind, value)
 

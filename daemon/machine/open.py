@@ -37,7 +37,8 @@ class Conversation(Generic[S]):
     for what the model does not know. check: what the machine says of itself, in lines for a person. lift: raises the
     pen where it stands; None where the machine cannot be asked to. moved: a line of a program, displaced by x and y in
     mm; None where programs cannot be displaced. home: begins homing between two jobs; None where a program does that.
-    rests: why no job can be begun until the machine is homed or gets an origin; "" when one can.
+    rests: why no job can be begun until the machine is homed or gets an origin; "" when one can. own_feed: why the
+    machine cannot be made faster or slower from here, and what to do instead; "" where it can.
     """
 
     session: Callable[[float], S]
@@ -47,6 +48,7 @@ class Conversation(Generic[S]):
     moved: Callable[[str, PlaceMm], str] | None = None
     home: Callable[[S, float], None] | None = None
     rests: Callable[[S], str] = lambda session: ""
+    own_feed: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ NO_RECORD = Record()
 
 
 class OpenedMachine(Generic[S]):
-    """A machine whose port is open. Only `stop`, `pause` and `resume` may be called from other threads."""
+    """A machine whose port is open. Only `stop`, `pause`, `resume` and `feed` may be called from other threads."""
 
     def __init__(
         self,
@@ -172,6 +174,12 @@ class OpenedMachine(Generic[S]):
     def resume(self) -> None:
         """Go on after a pause. Raises LinedrawError where the machine cannot pause."""
         self._link.resume()
+
+    def feed(self, percent: int) -> None:
+        """Draw at so many percent of the program's feeds, until the job ends. Raises LinedrawError where it cannot."""
+        if self._conversation.own_feed:
+            raise LinedrawError(self._conversation.own_feed)
+        self._link.feed(percent)
 
     def stop(self) -> None:
         """Hold at once, lift the pen, end the job. Returns at once."""

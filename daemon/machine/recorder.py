@@ -9,6 +9,7 @@ A recording is lines of `TIME KIND JSON`. TIME is the transport's clock in s, ex
     start      a list of [line, stroke]: a job begins
     stop       null; so are resume, home and unplugged
     pause      true or false: whether at once
+    feed       a number: percent
     full       null: the file has reached its limit, and nothing follows
 """
 
@@ -24,7 +25,9 @@ from typing import Any, Literal, TypeAlias, get_args
 from daemon.errors import DiskTrouble, LinedrawError
 from firmware_protocol.session import Event, JobLine
 
-Kind: TypeAlias = Literal["open", "<", ">", "event", "start", "stop", "pause", "resume", "home", "unplugged", "full"]
+Kind: TypeAlias = Literal[
+    "open", "<", ">", "event", "start", "stop", "pause", "resume", "feed", "home", "unplugged", "full"
+]
 
 LIMIT_BYTES = 64 << 20
 """About an hour of drawing at full speed."""
@@ -69,8 +72,8 @@ class Recorder:
         """A job is begun."""
         self._write(now, "start", [[line.text, line.stroke] for line in lines])
 
-    def asked(self, now: float, kind: Kind, value: bool | None = None) -> None:
-        """The session is asked to stop, pause, resume or home, or told that the machine is unplugged."""
+    def asked(self, now: float, kind: Kind, value: int | None = None) -> None:
+        """The session is asked to stop, pause, resume, home, change its feeds, or told that it is unplugged."""
         self._write(now, kind, value)
 
     def close(self) -> None:

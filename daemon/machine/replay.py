@@ -7,10 +7,11 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+from daemon.machine.link import obey
 from daemon.machine.recorder import Entry
 from daemon.shapes import ProgramLine
 from firmware_protocol.errors import LocalProtocolError
-from firmware_protocol.session import Event, PausableSession, Session
+from firmware_protocol.session import Event, Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +93,8 @@ def _asked(session: Session, entry: Entry, home: Callable[[float], None] | None)
             session.start([ProgramLine(text, stroke) for text, stroke in entry.value], at_s)
         case "stop":
             session.stop(at_s)
-        case "pause" | "resume":
-            pausable: PausableSession = session  # type: ignore[assignment]
-            pausable.pause(at_s, at_once=bool(entry.value)) if entry.kind == "pause" else pausable.resume(at_s)
+        case "pause" | "resume" | "feed":
+            obey(session, entry.kind, entry.value, at_s)
         case "home" if home is not None:
             home(at_s)
         case "unplugged":

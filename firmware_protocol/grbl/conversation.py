@@ -8,7 +8,7 @@ from firmware_protocol.errors import LocalProtocolError
 from firmware_protocol.grbl import codes, sentences
 from firmware_protocol.grbl.controller import Controller
 from firmware_protocol.grbl.entries import ENTER, Cause, end_job
-from firmware_protocol.grbl.feed import FeedOverride
+from firmware_protocol.grbl.feed import USUAL_PERCENT, FeedOverride
 from firmware_protocol.grbl.flow import Flow
 from firmware_protocol.grbl.habits import GO_ON, POLL_S, USUAL_POLL_S, Habits
 from firmware_protocol.grbl.job import Job
@@ -17,7 +17,7 @@ from firmware_protocol.grbl.replies import Alarm, Banner, Error, Ok, Reply, Stat
 from firmware_protocol.grbl.reports import heard_report
 from firmware_protocol.grbl.states import POLLED, RUNNING, TRANSITIONS, Signal, State
 from firmware_protocol.grbl.watch import Watch
-from firmware_protocol.session import Accepted, Event, Found, JobLine, Verdict
+from firmware_protocol.session import Accepted, Event, Finding, Found, JobLine, Verdict
 
 MOVING = 8
 """The error of a `$` command that came while the machine moved."""
@@ -32,6 +32,8 @@ class Conversation:
         """When the state began, and the time of the last call."""
         self.controller = Controller()
         self.feed = FeedOverride()
+        self._found: Sequence[Finding] = ()
+        """What was found about the job before."""
         self.flow = Flow((), room_bytes=None)
         """The lines that are being sent or answered now: questions, a job, a lift."""
         self.events: list[Event] = []
@@ -64,7 +66,8 @@ class Conversation:
         job = Job(lines, lift=self.habits.lift, controller=self.controller, counting=self.habits.counting)
         self.preparation = Preparation(self.controller, job, may_set=self.habits.may_set)
         self.job = job
-        self.events += map(Found, self.preparation.left)
+        self.feed.want(USUAL_PERCENT)
+        self._tell(self.preparation.left)
         if self.preparation.obstacles:
             job.doom(Verdict.REJECTED, sentences.obstacles(self.preparation.obstacles), position_known=True)
             end_job(self, job, lifted=False)
@@ -72,6 +75,11 @@ class Conversation:
             self.go(Signal.SET)
         else:
             self.prepared()
+
+    def _tell(self, findings: Sequence[Finding]) -> None:
+        """What the job before had already is told again only where it keeps this one from being drawn."""
+        self.events += [Found(each) for each in findings if each.blocks or each not in self._found]
+        self._found = tuple(findings)
 
     def prepared(self) -> None:
         """The settings are as they should be: try the program, or draw it."""

@@ -173,7 +173,7 @@ class GrblSession:
         self._talk.resume()
 
     def set_feed_percent(self, percent: int, now: float) -> None:
-        """Override all feeds of this and later jobs, 10 to 200 %; takes up to some seconds. Raises ValueError."""
+        """See `AdjustableSession.set_feed_percent`; it takes up to some seconds, and moves by G0 stay as they are."""
         self._talk.now = now
         self._talk.feed.want(percent)
 

@@ -7,10 +7,12 @@ from collections.abc import Callable
 
 import pytest
 
-from daemon.errors import MachineFault, NoMachine
+from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.machine.link import Link
 from daemon.machine.simulated import SimulatedTransport
 from daemon.shapes import ProgramLine
+from firmware_protocol.emco.session import XonXoffSession
+from firmware_protocol.emco.simulator.simulator import EmcoSimulator
 from firmware_protocol.grbl.session import GrblSession
 from firmware_protocol.grbl.simulator.faults import BrownOut, Fault, Hang, Unplug
 from firmware_protocol.grbl.simulator.simulator import GrblSimulator
@@ -210,3 +212,27 @@ def test_nobody_listening_for_a_while_is_not_the_silence_of_the_machine() -> Non
     table.transport.pass_s(60.0)
     table.link.listen(table.transport.now())
     assert isinstance(table.heard[-1], Status)
+
+
+def seconds_at(percent: int) -> float:
+    """How long the program takes when another thread wants so many percent after its fourth line."""
+    table = Table()
+    table.link.connect()
+    table.when(Accepted(3), in_another_thread(lambda: table.link.feed(percent)))
+    begun_s = table.transport.now()
+    assert table.link.draw(PROGRAM).verdict is Verdict.FINISHED
+    return table.transport.now() - begun_s
+
+
+def test_the_feeds_are_overridden_in_the_middle_of_a_drawing() -> None:
+    usual_s = seconds_at(100)
+    assert seconds_at(200) < usual_s - 0.5
+    assert seconds_at(50) > usual_s + 2.0
+
+
+def test_a_session_without_an_override_is_not_asked_for_one() -> None:
+    control = EmcoSimulator()
+    transport = SimulatedTransport(control)
+    session = XonXoffSession(now=transport.now(), bytes_per_s=960.0, times=lambda lines: [0.0 for _ in lines])
+    with pytest.raises(LinedrawError, match="cannot be made faster or slower"):
+        Link(transport, session, heard=lambda event: None).feed(80)

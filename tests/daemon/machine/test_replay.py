@@ -79,7 +79,7 @@ def test_a_session_that_says_something_else_is_noticed(tmp_path: Path) -> None:
 
 
 def test_orders_are_recorded_too(tmp_path: Path) -> None:
-    """Home, a pause at once, a resume and a stop."""
+    """Home, another feed, a pause at once, a resume and a stop."""
     machine = GrblMachine(url="sim://grbl?22=1&132=50&switches=-300:-300:0&23=3&130=300&131=300", home="start")
     program = program_of(TOOLPATH, machine, "x")
     below_home = [ProgramLine(moved(line.text, (-290.0, -290.0)), line.stroke) for line in program.lines]
@@ -88,6 +88,7 @@ def test_orders_are_recorded_too(tmp_path: Path) -> None:
     def hear(event: Event) -> None:
         heard.append(event)
         if event == Accepted(5):
+            way.feed(150)
             way.pause(at_once=True)
         if isinstance(event, Paused):
             way.resume()
@@ -100,7 +101,7 @@ def test_orders_are_recorded_too(tmp_path: Path) -> None:
         way.home(program)
         assert way.draw(Program(tuple(below_home), program.strokes)).verdict is Verdict.STOPPED
     kinds = {entry.kind for entry in read_recording(tmp_path / "recording.txt")}
-    assert kinds >= {"open", "home", "start", "pause", "resume", "stop"}
+    assert kinds >= {"open", "home", "start", "feed", "pause", "resume", "stop"}
     assert events(replay(tmp_path / "recording.txt")) == heard
 
 

@@ -48,12 +48,13 @@ def test_more_than_the_controller_offers_is_refused(percent: int) -> None:
 
 
 @pytest.mark.parametrize(("percent", "seconds"), [(50, 20.0), (200, 5.0)])
-def test_the_override_arrives_and_the_next_job_keeps_it(percent: int, seconds: float) -> None:
+def test_the_override_arrives_while_it_draws_and_the_next_job_forgets_it(percent: int, seconds: float) -> None:
     pair = Pair(plotter()).ready()
-    pair.session.set_feed_percent(percent, pair.now)
-    for _ in range(2):
+    for override, expected in ((percent, seconds), (None, 10.0)):
         begun = pair.now
         pair.session.start(stroke_lines([[(0, 0), (100, 0)]], feed=600), begun)
+        if override is not None:
+            pair.session.set_feed_percent(override, begun)
         assert pair.until(Ended).verdict is Verdict.FINISHED
         pair.events.clear()
-        assert pair.now - begun == pytest.approx(seconds + 3.0, abs=3.0)
+        assert pair.now - begun == pytest.approx(expected + 3.0, abs=3.0)

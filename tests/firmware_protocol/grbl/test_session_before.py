@@ -30,6 +30,15 @@ def test_findings_can_be_asked_for_without_a_job() -> None:
     assert pair.session.state is State.READY
 
 
+def test_what_is_found_is_told_once_and_again_when_it_has_changed() -> None:
+    pair = Pair(plotter(settings=FAST | {1: 25})).ready()
+    far = [*stroke_lines(CORNERS), Line("G0 X9000")]
+    for lines, told in ((stroke_lines(CORNERS), ["$1=255"]), (stroke_lines(CORNERS), []), (far, [""])):
+        pair.events.clear()
+        pair.draw(lines)
+        assert [command for command, _ in found(pair)] == told
+
+
 def test_what_would_spoil_the_drawing_keeps_it_from_being_begun() -> None:
     pair = Pair(plotter(settings=WANTING), lift=SERVO_LIFT).ready()
     sent = pair.sent
