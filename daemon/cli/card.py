@@ -1,0 +1,82 @@
+"""What `linedrawd setup` and `linedrawd calibrate` have in common: the machine is theirs, the card is drawn."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+
+from daemon.config import Machine, Options, Settings, load_settings
+from daemon.control import NoDaemon, Order, give_order
+from daemon.errors import NoMachine, SettingsError
+from daemon.jobs.card import card_programs, card_seconds, draw_card, gauge_words
+from daemon.jobs.devices import check, opened
+from daemon.jobs.open_machine import OpenMachine
+from daemon.places import usual_file
+from daemon.setup.edit import Values, lines_of, replace_file, with_keys
+
+HEAR_EVERY_S = 0.2
+
+
+def only_machine(settings: Settings) -> tuple[str, Machine]:
+    """The one that is meant, by its name."""
+    return next(iter(settings.machines.items()))
+
+
+@contextmanager
+def our_machine(settings: Settings) -> Iterator[OpenMachine]:
+    """The machine with its port open, nothing said yet. Raises NoMachine while the daemon has it, or where none is."""
+    machine = only_machine(settings)[1]
+    check(machine)
+    with suppress(NoDaemon):
+        give_order(settings.paths.control, Order(order="ping"))
+        raise NoMachine("linedrawd runs and has the machine: stop it first, as with `sudo systemctl stop linedrawd`")
+    with closing(opened(machine, lambda event: None, False)) as found:
+        yield found
+
+
+def draw(settings: Settings, *, corrected: bool) -> None:
+    """The card, now; Ctrl-C lifts the pen. Raises LinedrawError."""
+    name, machine = only_machine(settings)
+    programs = card_programs(settings.sheet_of(name), machine, corrected=corrected)
+    minutes = max(1, round(card_seconds(programs, machine) / 60))
+    with our_machine(settings) as found, ThreadPoolExecutor(1) as threads:
+        print(f"the test card is being drawn on {found.name}, about {minutes} min; Ctrl-C lifts the pen", flush=True)
+        work = threads.submit(draw_card, programs, found)
+        while not work.done():
+            try:
+                wait([work], HEAR_EVERY_S)
+            except KeyboardInterrupt:
+                found.stop()
+        work.result()
+    print("the test card is drawn")
+    gauge_words(machine, print)
+
+
+def settings_file(args: argparse.Namespace, environment: dict[str, str]) -> Path:
+    """The file that settings are written into: the one that is read, else the one that would be."""
+    given = getattr(args, "config", None)
+    found = Path(given) if given else usual_file(environment)
+    if found:
+        return found
+    home = Path(environment.get("XDG_CONFIG_HOME") or Path(environment.get("HOME", "/nonexistent")) / ".config")
+    return home / "linedrawd" / "linedrawd.toml"
+
+
+def write(file: Path, values: Values, *, text: str | None = None) -> None:
+    """Change these keys of the file and say so. Raises SettingsError; the file is then as it was.
+
+    text: what the file is taken to hold, if not what it does.
+    """
+    before = file.read_text(encoding="utf-8") if file.exists() else ""
+    changed = with_keys(before if text is None else text, values)
+    kept = replace_file(file, changed)
+    try:
+        load_settings(Options(config=file))
+    except SettingsError:
+        replace_file(file, before)
+        raise
+    print(f"\n{lines_of(values)}\n")
+    print(f"written into {file}" + (f"; as it was before: {kept}" if kept else ""))
