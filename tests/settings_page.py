@@ -27,7 +27,13 @@ SYSTEMD = {
     "RUNTIME_DIRECTORY": "/run/linedrawd",
 }
 """What systemd gives the daemon in its environment."""
-EXAMPLES: Mapping[str, Any] = {"pen_life_m": 1000.0, "motors_off_after_min": 10.0, "size_mm": (210.0, 297.0)}
+EXAMPLES: Mapping[str, Any] = {
+    "pen_life_m": 1000.0,
+    "motors_off_after_min": 10.0,
+    "size_mm": (210.0, 297.0),
+    "holds_bytes": 512,
+    "holds_blocks": 10,
+}
 """For keys that are not set unless somebody does."""
 _PATHS = {
     "state_dir": "/var/lib/linedrawd",

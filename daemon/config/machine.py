@@ -174,6 +174,13 @@ class EmcoMachine(Machine):
     """A block that is not acknowledged for longer is sent again."""
     retries: Annotated[int, Field(ge=0, le=100)] = 3
     """So often; then the transfer ends."""
+    chunk_bytes: Annotated[int, Field(ge=1, le=64)] = 16
+    """On a serial line no more is written at once: what has been written still arrives after the control's XOFF."""
+    holds_bytes: Annotated[int, Field(ge=1, le=1 << 20)] | None = None
+    """What the control can hold on a serial line without having drawn it. Only for one that draws while it reads: what
+    was sent before is then certainly drawn, and a control that takes more is known to throw it away."""
+    holds_blocks: Annotated[int, Field(ge=1, le=10000)] | None = None
+    """The same in blocks, where each is acknowledged."""
     reach_mm: tuple[Positive, Positive] = (350.0, 250.0)
     """How far the machine gets from X0 Y0."""
     pen: ZPenSettings = ZPenSettings()

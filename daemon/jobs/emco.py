@@ -124,7 +124,11 @@ class FileMachine(FileDrop):
 
 
 def _session(machine: EmcoMachine, now: float) -> XonXoffSession | BlockSession:
-    control = Control(on_stop=stop_lines(machine.dialect, z_pen_of(machine.pen)))
+    control = Control(
+        on_stop=stop_lines(machine.dialect, z_pen_of(machine.pen)),
+        holds_bytes=machine.holds_bytes,
+        holds_blocks=machine.holds_blocks,
+    )
     if machine.link == "blocks":
         return BlockSession(
             now=now,
@@ -140,6 +144,7 @@ def _session(machine: EmcoMachine, now: float) -> XonXoffSession | BlockSession:
         times=line_times_s,
         bytes_per_s=FORMATS[machine.preset].bytes_per_s(machine.baud),
         wait_for_xon=machine.wait_for_xon,
+        chunk_bytes=machine.chunk_bytes,
         xoff_limit_s=machine.xoff_limit_s,
         control=control,
     )
