@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from firmware_protocol.ink import Polyline
@@ -42,3 +43,17 @@ class Eventful(Protocol):
 
     def happen(self, sentence: str, now: float) -> None:
         """Something happens to the machine. Raises ValueError, naming all that can, when the sentence is not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """When a fault happens: `at_s` seconds after the port was opened, or right behind the `after_acks`-th
+    acknowledgement, of a line or of a command for the queue. State one of them.
+    """
+
+    at_s: float | None = None
+    after_acks: int | None = None
+
+    def __post_init__(self) -> None:
+        if (self.at_s is None) == (self.after_acks is None):
+            raise ValueError(f"{type(self).__name__} needs one moment: state either at_s or after_acks")

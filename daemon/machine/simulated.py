@@ -168,7 +168,7 @@ def _fault(key: str, value: str) -> Fault:
     if key not in _AT:
         raise ValueError(f"there is no option {key}")
     if value.startswith("@"):
-        return _AT[key](after_oks=int(value[1:]))
+        return _AT[key](after_acks=int(value[1:]))
     return _AT[key](at_s=float(value))
 
 

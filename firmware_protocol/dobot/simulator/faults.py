@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from firmware_protocol.simulator import Moment
+
 
 @dataclass(frozen=True, slots=True)
 class _Reply:
@@ -50,39 +52,27 @@ class CorruptRequest:
 
 
 @dataclass(frozen=True, slots=True)
-class _Moment:
-    """Happens `at_s` seconds after the port was opened, or with the `after_acks`-th acknowledgement: state one."""
-
-    at_s: float | None = None
-    after_acks: int | None = None
-
-    def __post_init__(self) -> None:
-        if (self.at_s is None) == (self.after_acks is None):
-            raise ValueError(f"{type(self).__name__} needs one moment: state either at_s or after_acks")
-
-
-@dataclass(frozen=True, slots=True)
-class ClosePort(_Moment):
+class ClosePort(Moment):
     """The cable is pulled; the arm goes on with what is in its queue."""
 
 
 @dataclass(frozen=True, slots=True)
-class PowerCut(_Moment):
+class PowerCut(Moment):
     """The arm restarts by itself: queue and position are lost, alarm 0x00 stands, and for a while it is deaf."""
 
 
 @dataclass(frozen=True, slots=True)
-class Hang(_Moment):
+class Hang(Moment):
     """The arm stops and says nothing more, until it is switched off and on."""
 
 
 @dataclass(frozen=True, slots=True)
-class StopQueue(_Moment):
+class StopQueue(Moment):
     """The queue stands still after the running command, without an alarm."""
 
 
 @dataclass(frozen=True, slots=True)
-class RaiseAlarm(_Moment):
+class RaiseAlarm(Moment):
     """An alarm comes up, 0x50 (lost step of joint 1) unless stated otherwise, and the motion stops."""
 
     code: int = 0x50

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from firmware_protocol.simulator import Moment
+
 
 @dataclass(frozen=True, slots=True)
 class DropByte:
@@ -48,34 +50,22 @@ class UnsaidAlarm:
 
 
 @dataclass(frozen=True, slots=True)
-class _Moment:
-    """Happens `at_s` seconds after the port was opened, or right behind the `after_oks`-th `ok`: state one of them."""
-
-    at_s: float | None = None
-    after_oks: int | None = None
-
-    def __post_init__(self) -> None:
-        if (self.at_s is None) == (self.after_oks is None):
-            raise ValueError(f"{type(self).__name__} needs one moment: state either at_s or after_oks")
-
-
-@dataclass(frozen=True, slots=True)
-class Hang(_Moment):
+class Hang(Moment):
     """The chip stops: no step, no answer, until the port is opened again."""
 
 
 @dataclass(frozen=True, slots=True)
-class BrownOut(_Moment):
+class BrownOut(Moment):
     """The chip restarts by itself: motion stops, banner, position 0, Idle without any alarm (with $22=1: Alarm)."""
 
 
 @dataclass(frozen=True, slots=True)
-class HardLimit(_Moment):
+class HardLimit(Moment):
     """A limit switch trips as with $21=1: ALARM:1, whatever $21 says."""
 
 
 @dataclass(frozen=True, slots=True)
-class Unplug(_Moment):
+class Unplug(Moment):
     """The cable is pulled, and with it the power of the chip."""
 
 

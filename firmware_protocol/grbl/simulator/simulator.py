@@ -218,7 +218,7 @@ class GrblSimulator:
         ready_s = self._outbound.send(text.encode("latin-1"), self._chip.now)
         self._chip.stall_until_s = max(self._chip.stall_until_s, ready_s)
         if text == "ok\r\n":
-            self._timed += [(self._chip.now, f) for f in self._timed_faults if f.after_oks == self._oks]
+            self._timed += [(self._chip.now, f) for f in self._timed_faults if f.after_acks == self._oks]
             self._timed.sort(key=_moment)
 
     # -- faults --

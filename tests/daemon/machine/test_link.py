@@ -152,7 +152,7 @@ def test_an_interrupt_at_the_very_end_does_not_wait_for_ever() -> None:
 
 
 def test_an_unplugged_machine_is_an_end_of_the_job() -> None:
-    table = Table(Unplug(after_oks=12))
+    table = Table(Unplug(after_acks=12))
     table.link.connect()
     ended = table.link.draw(PROGRAM)
     assert (ended.verdict, table.heard[-1]) == (Verdict.UNPLUGGED, ended)

@@ -148,10 +148,10 @@ def test_a_refused_line_ends_the_job_and_what_is_on_the_sheet_is_told() -> None:
 @pytest.mark.parametrize(
     ("fault", "verdict", "known", "lifted"),
     [
-        (HardLimit(after_oks=22), Verdict.ALARM, False, False),
-        (BrownOut(after_oks=22), Verdict.RESTARTED, False, True),
-        (Hang(after_oks=22), Verdict.SILENT, False, False),
-        (Unplug(after_oks=22), Verdict.UNPLUGGED, False, False),
+        (HardLimit(after_acks=22), Verdict.ALARM, False, False),
+        (BrownOut(after_acks=22), Verdict.RESTARTED, False, True),
+        (Hang(after_acks=22), Verdict.SILENT, False, False),
+        (Unplug(after_acks=22), Verdict.UNPLUGGED, False, False),
         (LoseOk(22), Verdict.SILENT, True, True),
     ],
 )

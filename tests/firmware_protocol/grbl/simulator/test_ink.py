@@ -95,7 +95,7 @@ def test_a_hang_stops_everything_until_the_port_is_opened_again() -> None:
 
 
 def test_a_brown_out_forgets_the_position_and_says_nothing_but_the_banner() -> None:
-    conversation = talk(faults=[BrownOut(after_oks=2)])
+    conversation = talk(faults=[BrownOut(after_acks=2)])
     assert conversation.ask("G1X30F1200\n\n", within_s=3.0) == ["ok", "ok", "", "Grbl 1.1h ['$' for help]"]
     assert conversation.ask("?")[0].startswith("<Idle|MPos:0.000,0.000,0.000|")
     assert 0 <= conversation.sim.position_mm[0] < 1
