@@ -57,6 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     from daemon.cli import (  # noqa: PLC0415
         calibrate,
         control,
+        doctor,
         draw,
         machine,
         models,
@@ -85,7 +86,7 @@ def _parser() -> argparse.ArgumentParser:
     add_record(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, scan, control, machine, status, usb, watch, calibrate, models, simulate, replay):
+    for group in (plan, draw, scan, control, machine, status, usb, watch, doctor, calibrate, models, simulate, replay):
         group.add_parser(subparsers)
     return parser
 

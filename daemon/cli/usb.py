@@ -40,13 +40,19 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """0 when all that is plugged in can be used, 1 when something cannot, or the USB cannot be looked at."""
     found = inventory()
-    brltty = _BRLTTY.exists()
-    told = [tell(device, branch(device.place), brltty=brltty) for device in found.devices if kind_of(device)]
+    told = look(found)
     for lines in told:
         print("\n".join(lines))
     if not told:
         print(_nothing(found))
     return 1 if found.why_empty or any(len(lines) > 1 for lines in told) else 0
+
+
+def look(found: UsbInventory | None = None) -> list[list[str]]:
+    """What `tell` says of each device that matters."""
+    brltty = _BRLTTY.exists()
+    devices = (found or inventory()).devices
+    return [tell(device, branch(device.place), brltty=brltty) for device in devices if kind_of(device)]
 
 
 def _nothing(found: UsbInventory) -> str:

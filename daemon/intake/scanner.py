@@ -102,6 +102,10 @@ class Scanner:
             self._busy.release()
         return _pressed(button, lines)
 
+    def name(self) -> str:
+        """SANE's name of the scanner that is used. Raises ScannerTrouble where there is none, or more than one."""
+        return self._device()
+
     def end(self) -> None:
         """Stop what is scanned; no scan begins any more."""
         self._ended.set()
