@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:  # A process that only streams a Program need not load numpy.
     import numpy as np
@@ -91,12 +91,41 @@ class LineGraph:
     """Pieces of ink that were too small to be anything but dirt, and were left out."""
 
 
+class Line(NamedTuple):
+    """A straight move to `end`, (x, y) in mm, from where the pen is."""
+
+    end: tuple[float, float]
+
+
+class Arc(NamedTuple):
+    """A move to `end` from where the pen is along a circle about `centre`, both (x, y) in mm; never a whole turn."""
+
+    end: tuple[float, float]
+    centre: tuple[float, float]
+    clockwise: bool
+
+    def sweep(self, start: tuple[float, float]) -> float:
+        """The angle in rad, always positive, that is run through from `start` on."""
+        from_rad, to_rad = (math.atan2(y - self.centre[1], x - self.centre[0]) for x, y in (start, self.end))
+        return (from_rad - to_rad if self.clockwise else to_rad - from_rad) % math.tau
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Stroke:
-    """What is drawn between engaging and disengaging the pen: one polyline. A single point is a dot."""
+    """What is drawn between engaging and disengaging the pen: one polyline. A single point is a dot.
+
+    moves: the same line as fewer moves from its first point on, where curves have been fitted to it; None where it is
+    drawn along its points. Who moves the points moves these as well, or says None. Raises ValueError when the two do
+    not end in the same place.
+    """
 
     points: Points
     pen: int = 0
+    moves: tuple[Line | Arc, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.moves and self.moves[-1].end != tuple(self.points[-1].tolist()):
+            raise ValueError(f"moves to {self.moves[-1].end} are not the line to {self.points[-1]}: fit them again")
 
     @property
     def length(self) -> float:

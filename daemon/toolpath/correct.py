@@ -8,7 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from daemon.shapes import Points, Stroke, Toolpath
+from daemon.toolpath.curves import fitted, points_of
 
+_CHORD_MM, _FITTED_MM = 0.002, 0.01
+"""On a crooked machine arcs are none: their chords are led aside, and arcs are fitted to these again."""
 _TURNED_MM = 0.02
 """An axis has turned round when it has come back so far; less is what tracing leaves of a straight line."""
 
@@ -37,9 +40,21 @@ def corrected(toolpath: Toolpath, correction: Correction) -> Toolpath:
     """
     if correction == Correction(corner_mm=correction.corner_mm):
         return toolpath
-    straight = [replace(stroke, points=_straight(stroke.points, correction)) for stroke in toolpath.strokes]
+    lines = [_polyline(stroke) for stroke in toolpath.strokes]
+    straight = [replace(line, points=_straight(line.points, correction)) for line in lines]
     taken_up = _TakenUp(correction.backlash_mm, toolpath.start_mm)
-    return replace(toolpath, strokes=tuple(taken_up.stroke(stroke) for stroke in straight))
+    led = [taken_up.stroke(stroke) for stroke in straight]
+    return replace(toolpath, strokes=tuple(map(_curved_as, led, toolpath.strokes)))
+
+
+def _polyline(stroke: Stroke) -> Stroke:
+    if stroke.moves is None:
+        return stroke
+    return replace(stroke, points=points_of(stroke.points[0], stroke.moves, chord_mm=_CHORD_MM), moves=None)
+
+
+def _curved_as(line: Stroke, given: Stroke) -> Stroke:
+    return line if given.moves is None else fitted(line, error_mm=_FITTED_MM)
 
 
 def _straight(points: Points, correction: Correction) -> Points:
