@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 from typing import TypeAlias
 
 from daemon.errors import OutOfReach, SettingsError
 from daemon.program.gcode import ZPen
+from daemon.program.moves import Written, written
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
-from firmware_protocol.emco.blocks import number, rapid, straight
+from firmware_protocol.emco.blocks import arc, number, rapid, straight
 from firmware_protocol.emco.dialects import DIALECTS, RAPID_MM_MIN, TRAVEL_MM, Dialect, DialectName
 from firmware_protocol.errors import LocalProtocolError
 
@@ -25,9 +25,10 @@ def write_emco(toolpath: Toolpath, *, dialect: DialectName, name: str, pen: ZPen
     name: of the program, in capitals; `Dialect.name_from` makes one. Positions in mm with at most 3 decimals, always
     with a point; every block states both of its coordinates. The program chooses no tool, starts no spindle and no
     coolant, and has no block numbers (a control counts them to 9999 at most). G54 must put X0 Y0 at the sheet's
-    origin and Z0 at its surface. All strokes are polylines, so every block is G0 or G1. Raises OutOfReach, naming the
-    first stroke for which the travel of the axes does not suffice wherever G54 lies; SettingsError for a name or a
-    speed that the control does not take; ValueError when draw_mm_s or the pen's plunge_mm_s is not positive.
+    origin and Z0 at its surface. Arcs are G2 and G3 with I and J counted from their start; rounding leaves their ends
+    0.002 mm off their circles at most, and none is a whole turn. Raises OutOfReach, naming the first stroke for which
+    the travel of the axes does not suffice wherever G54 lies; SettingsError for a name or a speed that the control
+    does not take; ValueError when draw_mm_s or the pen's plunge_mm_s is not positive.
     """
     if draw_mm_s <= 0 or pen.plunge_mm_s <= 0:
         raise ValueError(f"a pen cannot be moved at draw_mm_s = {draw_mm_s} with {pen}: give speeds above 0")
@@ -60,19 +61,20 @@ def _head(spoken: Dialect, name: str) -> tuple[str, ...]:
 
 def _stroke(stroke: Stroke, pen: ZPen, draw_mm_s: float) -> Iterator[str]:
     """Each block of one stroke, from the travel to it to the lifted pen. A stroke of one point is a dot."""
-    places: list[Place] = [(float(x_mm), float(y_mm)) for x_mm, y_mm in stroke.points.tolist()]
-    yield _rapid(places[0])
+    x_mm, y_mm = stroke.points[0].tolist()
+    yield _rapid((x_mm, y_mm))
     yield straight(z=pen.down_mm, feed_mm_min=60 * pen.plunge_mm_s)
-    yield from _drawn(places, 60 * draw_mm_s)
+    feed = f" F{number(60 * draw_mm_s)}"
+    for block in map(_block, written(stroke)):
+        yield block + feed
+        feed = ""
     yield rapid(z=pen.up_mm)
 
 
-def _drawn(places: Sequence[Place], feed_mm_min: float) -> Iterator[str]:
-    """G1 along a polyline, the feed at its first block; what the last decimal does not show is left out."""
-    written = [(number(x), number(y)) for x, y in places]
-    moves = [new for old, new in pairwise(zip(written, places, strict=True)) if new[0] != old[0]]
-    for index, (_, (x_mm, y_mm)) in enumerate(moves):
-        yield straight(x=x_mm, y=y_mm, feed_mm_min=None if index else feed_mm_min)
+def _block(move: Written) -> str:
+    if move.to_centre is None:
+        return straight(x=move.end[0], y=move.end[1])
+    return arc(move.end, move.to_centre, clockwise=move.clockwise)
 
 
 def _rapid(place: Place) -> str:

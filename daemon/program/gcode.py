@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TypeAlias
 
+from daemon.program.moves import Written, written
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
 
 
@@ -40,7 +40,9 @@ def write_gcode(toolpath: Toolpath, *, pen: Pen, draw_mm_s: float) -> Program:
     """Disengage; for each stroke travel, engage, draw, disengage; park.
 
     Positions in mm with 3 decimals. Every line states both of its coordinates, so that none depends on what another
-    line left; G1 and F stand once a stroke. A stroke of one point is a dot: the pen goes down and up. No M2 at the
+    line left; F stands once a stroke, G1, G2 and G3 where they change. Arcs are G2 and G3 with I and J, the way from
+    their start to their centre; rounding leaves their ends 0.002 mm off their circles at most, where GRBL refuses
+    0.005 (error:33), and none is a whole turn. A stroke of one point is a dot: the pen goes down and up. No M2 at the
     end: GRBL would switch the spindle output, and with it a servo, off. Dialect: GRBL 1.1, also taken by grblHAL.
     Raises ValueError when draw_mm_s or the pen's plunge_mm_s is not positive.
     """
@@ -65,14 +67,22 @@ def lift_lines(pen: Pen) -> tuple[str, ...]:
 
 def _stroke(stroke: Stroke, pen: Pen, draw_mm_s: float) -> Iterator[str]:
     """Each line of one stroke, from the travel to it to the lifted pen."""
-    positions = [_position(x_mm, y_mm) for x_mm, y_mm in stroke.points.tolist()]
-    yield f"G0 {positions[0]}"
+    first_mm: list[float] = stroke.points[0].tolist()
+    yield f"G0 {_position(*first_mm)}"
     yield from _engage(pen)
-    moves = [new for old, new in pairwise(positions) if new != old]
-    if moves:
-        yield f"G1 {moves[0]} F{_number(60 * draw_mm_s)}"
-        yield from moves[1:]
+    feed, before = f" F{_number(60 * draw_mm_s)}", ""
+    for word, places in map(_words, written(stroke)):
+        yield f"{places}{feed}" if word == before else f"{word} {places}{feed}"
+        feed, before = "", word
     yield from _disengage(pen)
+
+
+def _words(move: Written) -> tuple[str, str]:
+    """How the pen is moved, and where to."""
+    if move.to_centre is None:
+        return "G1", _position(*move.end)
+    i_mm, j_mm = move.to_centre
+    return ("G2" if move.clockwise else "G3"), f"{_position(*move.end)} I{_coordinate(i_mm)} J{_coordinate(j_mm)}"
 
 
 def _engage(pen: Pen) -> tuple[str, ...]:
