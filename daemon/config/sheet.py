@@ -76,6 +76,8 @@ class Sheet(Section):
     """Left and right exchanged, before it is turned."""
     error_mm: Positive = 0.05
     """So far a drawn line may lie from the one that was understood."""
+    curve_tolerance_mm: Annotated[float, Field(ge=0, le=1)] = 0.05
+    """So far, where curves are drawn as arcs; with 0 every line is drawn in straight pieces, by error_mm."""
 
     @model_validator(mode="after")
     def _room_inside_the_margin(self) -> Sheet:

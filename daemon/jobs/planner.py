@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from daemon.config import Machine, Settings
+from daemon.config import GrblMachine, Machine, Settings
 from daemon.errors import LinedrawError
 from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
@@ -170,13 +170,24 @@ def _toolpath(
     return plan_toolpath(
         drawing,
         layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, true_size),
-        precision=Precision(sheet.error_mm, _ERROR_PX * given_px(page) / given_px(readable), machine.resolution_mm),
+        precision=Precision(
+            sheet.error_mm,
+            _ERROR_PX * given_px(page) / given_px(readable),
+            machine.resolution_mm,
+            _curve_mm(settings, machine),
+        ),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,
         reach_mm=reach_mm(machine),
         reach_low_mm=reach_low_mm(sheet, machine),
         rejoin=settings.planning.graph != "paper",
     )
+
+
+def _curve_mm(settings: Settings, machine: Machine) -> float:
+    """0 in the paper's own forms, which know no arcs."""
+    paper_program = isinstance(machine, GrblMachine) and machine.dialect == "paper"
+    return 0.0 if paper_program or settings.planning.graph == "paper" else settings.sheet.curve_tolerance_mm
 
 
 def _write_pictures(
