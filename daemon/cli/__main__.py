@@ -63,6 +63,7 @@ def _parser() -> argparse.ArgumentParser:
         models,
         plan,
         replay,
+        report,
         scan,
         serve,
         simulate,
@@ -86,7 +87,22 @@ def _parser() -> argparse.ArgumentParser:
     add_record(parser)
     parser.set_defaults(run=serve.run)
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
-    for group in (plan, draw, scan, control, machine, status, usb, watch, doctor, calibrate, models, simulate, replay):
+    for group in (
+        plan,
+        draw,
+        scan,
+        control,
+        machine,
+        status,
+        usb,
+        watch,
+        doctor,
+        calibrate,
+        report,
+        models,
+        simulate,
+        replay,
+    ):
         group.add_parser(subparsers)
     return parser
 

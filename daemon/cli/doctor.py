@@ -70,8 +70,8 @@ def line_of(finding: Finding) -> str:
     return f"{_SIGNS[finding.state]:6} {finding.name:16} {finding.words}"
 
 
-def findings(args: argparse.Namespace) -> Iterator[Finding]:
-    """In the order in which a person would look."""
+def findings(args: argparse.Namespace, *, ask: bool = True) -> Iterator[Finding]:
+    """In the order in which a person would look. ask: machines, which resets many a controller where no daemon runs."""
     try:
         settings = settings_of(args)
     except LinedrawError as error:
@@ -85,7 +85,7 @@ def findings(args: argparse.Namespace) -> Iterator[Finding]:
     yield _scanner(settings)
     runs = _runs(settings)
     yield _daemon(settings, runs=runs)
-    for name, machine in settings.machines.items():
+    for name, machine in settings.machines.items() if ask or runs else ():
         yield from _machine(settings, name, machine, runs=runs)
 
 
