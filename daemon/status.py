@@ -23,12 +23,14 @@ AT_MOST_EVERY_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What status.json holds. `state` is one word, `words` a sentence; seconds come from the machine's time model.
+    """What status.json holds. `state` is one word, `reason` why it is so, `words` a sentence; seconds come from the
+    machine's time model.
 
     ink_m: metres that the pen has drawn; pen: says that it is worn.
     """
 
     state: str = "starting"
+    reason: str = ""
     words: str = ""
     pid: int = 0
     machine: str = ""
@@ -70,6 +72,9 @@ class StatusBoard:
             return self._status
 
     def change(self, **values: Any) -> None:
+        """A new state has its own reason, or none."""
+        if "state" in values:
+            values = {"reason": ""} | values
         with self._lock:
             self._status = replace(self._status, **values)
         self._changed.set()

@@ -40,15 +40,17 @@ def _diagram() -> Iterator[str]:
 def _states() -> Iterator[str]:
     yield "| state | what it means | what to do |"
     yield "|---|---|---|"
-    for state, meaning in MEANINGS.items():
-        yield f"| {state.value} | {meaning.means} | {meaning.remedy} |"
+    for (state, reason), meaning in MEANINGS.items():
+        name = f"{state.value}, {reason.value}" if reason.value else state.value
+        yield f"| {name} | {meaning.means} | {meaning.remedy} |"
 
 
 def _outcomes() -> Iterator[str]:
     yield "| how a drawing ends | why | the job is then | first |"
     yield "|---|---|---|---|"
     for verdict, outcome in OUTCOMES.items():
-        yield f"| {verdict.value} | {outcome.cause} | {outcome.state.value} | {outcome.remedy or '-'} |"
+        state = f"{outcome.state.value}, {outcome.reason.value}" if outcome.reason.value else outcome.state.value
+        yield f"| {verdict.value} | {outcome.cause} | {state} | {outcome.remedy or '-'} |"
 
 
 if __name__ == "__main__":

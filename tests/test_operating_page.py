@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.jobs.states import MEANINGS, OUTCOMES, STEPS, State
+from daemon.jobs.states import MEANINGS, OUTCOMES, STEPS, Reason, State
 from firmware_protocol.session import Verdict
 from tests.operating_page import PAGE, made, page
 
@@ -15,7 +15,8 @@ def test_the_page_is_up_to_date() -> None:
 
 
 def test_every_state_and_every_verdict_has_its_row() -> None:
-    assert set(MEANINGS) == set(State)
+    assert {state for state, _ in MEANINGS} == set(State)
+    assert {reason for _, reason in MEANINGS} == set(Reason)
     assert set(OUTCOMES) == set(Verdict)
 
 

@@ -12,9 +12,13 @@ from typing import Any
 
 from daemon.cli.options import add_places, settings_of
 from daemon.errors import LinedrawError
+from daemon.jobs.states import Reason, State, meaning_of
 from daemon.status import JOB_LOG_NAME
 
-_LINE = re.compile(r"(?P<time>\S+) \w+ \S+ (?P<words>.*?) state=(?P<state>\w+)")
+_LINE = re.compile(
+    r"(?P<time>\S+) \w+ \S+ (?P<words>.*?) state=(?P<state>\w+)"
+    r'(?: reason=(?:"(?P<quoted>[^"\\]*)"|(?P<reason>[^\s"]+)))?'
+)
 _FIGURES = ("strokes", "drawn_mm", "travelled_mm", "estimated_s", "real_s")
 _NAME = re.compile(r' name=("(?:[^"\\]|\\.)*"|\S+)')
 
@@ -32,11 +36,13 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "jobs",
         help="what it has done",
-        description="Every job: its id, its state, since when, the name of its picture, and what was said of it.",
+        description="Every job: its id, its state and why, since when, its picture's name, and what was said of it.",
         epilog="example:\n  linedrawd jobs | grep -w failed\n  linedrawd jobs --json | jq '.[].name'",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--json", action="store_true", help="as one JSON list, with the figures of each report")
+    parser.add_argument(
+        "--json", action="store_true", help="as one JSON list, with what to do and the figures of reports"
+    )
     add_places(parser)
     parser.set_defaults(run=jobs)
 
@@ -56,6 +62,8 @@ def status(args: argparse.Namespace) -> int:
     for key, value in said.items():
         if value not in ("", None, 0, 0.0) or key == "state":
             print(f"{key.replace('_', ' '):14} {value}")
+    if said.get("reason") and (remedy := _remedy(str(said["state"]), str(said["reason"]))):
+        print(f"{'what to do':14} {remedy}")
     return 0 if runs else 1
 
 
@@ -67,7 +75,8 @@ def jobs(args: argparse.Namespace) -> int:
         return 0
     for job in found:
         name = job["name"] if set(job["name"]).isdisjoint(' "=\\') else json.dumps(job["name"], ensure_ascii=False)
-        print(f"{job['id']:32} {job['state']:12} {job['changed']}  {name}  {job['words']}")
+        state = f"{job['state']}, {job['reason']}" if job["reason"] else job["state"]
+        print(f"{job['id']:32} {state:12} {job['changed']}  {name}  {job['words']}")
     return 0
 
 
@@ -82,14 +91,25 @@ def _job(folder: Path) -> Iterator[dict[str, str]]:
         named = _NAME.search(log[0])
         name = json.loads(named[1]) if named and named[1].startswith('"') else named[1] if named else folder.name
         last = steps[-1]
+        reason = last["quoted"] or last["reason"] or ""
         yield {
             "id": folder.name,
             "name": name,
             "state": last["state"],
+            "reason": reason,
+            "remedy": _remedy(last["state"], reason),
             "changed": last["time"],
             "words": last["words"],
             "folder": str(folder),
         }
+
+
+def _remedy(state: str, reason: str) -> str:
+    """What a person does about it; "" for what another version has written."""
+    try:
+        return meaning_of(State(state), Reason(reason)).remedy
+    except ValueError:
+        return ""
 
 
 def _figures(folder: Path) -> dict[str, Any]:

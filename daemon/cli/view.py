@@ -88,7 +88,8 @@ def _seconds(clock: str) -> float:
 def _machine(said: dict[str, Any], size: Size, *, runs: bool) -> str:
     if not runs:
         return _styled("no daemon runs; this is what the last one said", RED, size)
-    parts = [f"{said.get('machine') or 'no machine'}: {said.get('state', '?')}", said.get("port"), said.get("firmware")]
+    state = ", ".join(str(said[key]) for key in ("state", "reason") if said.get(key)) or "?"
+    parts = [f"{said.get('machine') or 'no machine'}: {state}", said.get("port"), said.get("firmware")]
     return _styled("   ".join(str(part) for part in parts if part), BOLD, size)
 
 

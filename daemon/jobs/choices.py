@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from daemon.errors import LinedrawError
@@ -11,7 +11,7 @@ from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.journal import UNTOLD, Job
 from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME
-from daemon.shapes import Program
+from daemon.shapes import Program, ProgramLine
 
 _FROM_NAME = "from_stroke"
 NOT_PLACED = (
@@ -49,7 +49,7 @@ class Choices:
         if source is None:
             raise LinedrawError(f"the picture of job {job.id} is no longer kept: drop it into the inbox again")
         side = folder / SIDE_NAME
-        new = self._desk.folders.copy(source, {SIDE_NAME: side.read_bytes()} if side.exists() else None)
+        new = self._desk.folders.copy(source, {SIDE_NAME: side.read_bytes()} if side.exists() else None, name=job.name)
         return f"job {self._desk.add(new, job.name)} draws {job.name} once more"
 
     def drain(self) -> str:
@@ -74,10 +74,12 @@ class Choices:
         return f"job {job.id} goes on from stroke {stroke}"
 
 
-def program_left(job: Job, folder: Path, program: Program) -> Program:
+def program_left(job: Job, folder: Path, program: Program, *, without: Sequence[ProgramLine]) -> Program:
     """What of the program is to be drawn: all, or from the stroke on that a person has named.
 
     The lines before the first stroke, which lift the pen, stay; each stroke begins with the travel to its start.
+    without: lines that a job leaves out which goes on.
+
     Raises LinedrawError where ink may be on the sheet and no stroke has been named.
     """
     if not job.possible:
@@ -86,5 +88,7 @@ def program_left(job: Job, folder: Path, program: Program) -> Program:
         first = int((folder / _FROM_NAME).read_text(encoding="ascii"))
     except (OSError, ValueError):
         raise LinedrawError(f"nobody has said from which stroke job {job.id} goes on: say it again") from None
-    lines = tuple(line for line in program.lines if line.stroke is None or line.stroke >= first)
+    lines = tuple(
+        line for line in program.lines if line not in without and (line.stroke is None or line.stroke >= first)
+    )
     return Program(lines, program.strokes)

@@ -13,7 +13,8 @@ from daemon.errors import DiskTrouble, LinedrawError
 from daemon.jobs.folder import JobFolders
 from daemon.jobs.journal import Job, Journal
 from daemon.jobs.record import read_record, write_record
-from daemon.jobs.states import HOW_ON, State
+from daemon.jobs.standing import forget_place
+from daemon.jobs.states import HOW_ON, OVER, UNDER_THE_PEN, Reason, State
 
 DISK_RETRY_S = 10.0
 _INTERRUPTED = (
@@ -23,9 +24,9 @@ _BEFORE_INK_ENDED = "the daemon ended before the first stroke: it is drawn when 
 _GONE = "the folder of job {job} has gone, deleted by hand: drop the picture into the inbox again"
 _LOST = "the journal was lost and made again from the job folders: look at the sheet and at `linedrawd jobs`"
 _DROPPED = "a person dropped the job"
-_LOUD = {State.FAILED: logging.ERROR, State.INTERRUPTED: logging.ERROR, State.CANCELLED: logging.WARNING}
+_LOUD = dict.fromkeys((State.FAILED, State.INTERRUPTED), logging.ERROR)
+_LOUD |= dict.fromkeys((State.PAUSED, State.CANCELLED), logging.WARNING)
 _READY = (State.PLANNED, State.WAITING)
-_RECORDED = (State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED)
 _BEFORE_INK = (State.QUEUED, State.PLANNED, State.WAITING, State.INTERRUPTED)
 
 
@@ -56,8 +57,7 @@ class Desk:
         self.changes = 0
         """Counts what has changed, so that a change between a look and a `wait` is not slept over."""
         self._asks_for_sheets, self._ahead, self._rank = asks_for_sheets, ahead, rank
-        self._cancelled: set[str] = set()
-        self._troubled = ("", "")
+        self._cancelled, self._troubled = set[str](), ("", "")
         self._changed = threading.Condition(threading.RLock())
 
     def recover(self, inbox: Path) -> None:
@@ -66,14 +66,16 @@ class Desk:
         self._adopt_strays()
         for job in self.journal.jobs(State.PLANNING):
             self.step(job.id, State.QUEUED, "the daemon ended while it was planning: it plans again")
-        for job in self.journal.jobs(State.DRAWING):
+        forget_place(self, "linedrawd was started anew")
+        for job in self.journal.jobs(*UNDER_THE_PEN):
             if not job.possible:
                 self.step(job.id, State.PLANNED, _BEFORE_INK_ENDED)
                 continue
             # First: after a cut between the two nothing may start either.
             self.hold(f"job {job.id} was interrupted: look at the sheet, and set the pen to its origin again")
             self.cut_off = True
-            self.step(job.id, State.INTERRUPTED, _INTERRUPTED.format(paper=job.on_paper, how=HOW_ON.format(job=job.id)))
+            said = _INTERRUPTED.format(paper=job.on_paper, how=HOW_ON.format(job=job.id))
+            self.step(job.id, State.INTERRUPTED, said, reason=Reason.POSITION_UNKNOWN)
         for job in self.journal.jobs(State.QUEUED, *_READY):
             if not self.folders.path(job.id).is_dir():
                 self.step(job.id, State.FAILED, _GONE.format(job=job.id))
@@ -91,7 +93,8 @@ class Desk:
                 if lost and not self.held:
                     self.hold(_LOST)
                 self.journal.adopt(told)
-                self.say("taken over from its folder", job=job_id, level=logging.WARNING, state=told.state.value)
+                figures = {"state": told.state.value, "reason": told.reason.value}
+                self.say("taken over from its folder", job=job_id, level=logging.WARNING, **figures)
 
     @property
     def held(self) -> str:
@@ -109,19 +112,20 @@ class Desk:
         self._show_queue()
         return job_id
 
-    def step(self, job_id: str, state: State, words: str = "", **figures: Any) -> None:
+    def step(self, job_id: str, state: State, words: str = "", *, reason: Reason = Reason.NONE, **figures: Any) -> None:
         """Record the step and tell it. Raises DiskTrouble; the step has then not happened."""
         before = self.journal.job(job_id)
-        job = self.journal.step(job_id, state, words)
-        if state in _RECORDED or (before and before.state is State.DRAWING):
+        job = self.journal.step(job_id, state, words, reason=reason)
+        if state in OVER or (before and before.state in UNDER_THE_PEN):
             self._record(job)
-        self._tell_step(state, words, job_id, figures)
+        self._tell_step(job, figures)
 
-    def _tell_step(self, state: State, words: str, job_id: str, figures: dict[str, Any]) -> None:
+    def _tell_step(self, job: Job, figures: dict[str, Any]) -> None:
         self._troubled = ("", "")
-        level = _LOUD.get(state, logging.INFO)
-        self.say(words or f"the job is {state.value}", job=job_id, level=level, state=state.value, **figures)
-        if state in (State.FAILED, State.INTERRUPTED):
+        state, words, level = job.state.value, job.words, _LOUD.get(job.state, logging.INFO)
+        because = {"reason": job.reason.value} if job.reason.value else {}
+        self.say(words or f"the job is {state}", job=job.id, level=level, state=state, **because, **figures)
+        if job.state in (State.FAILED, State.INTERRUPTED):
             self.show(last_error=words)
         self._show_queue()
 
@@ -135,13 +139,16 @@ class Desk:
         """As `step`, but a full disk is waited for: what happened on paper must not be forgotten."""
         self._at_last(job_id, lambda: self.step(job_id, state, words, **figures))
 
-    def end_drawing(self, job_id: str, state: State, words: str, *, extent: tuple[int, int], **figures: Any) -> None:
+    def end_drawing(
+        self, job_id: str, state: State, words: str, *, extent: tuple[int, int], reason: Reason, **figures: Any
+    ) -> None:
         """A drawing is over. extent: strokes certainly drawn, and from which number on none is touched."""
         certain, possible = extent
 
         def step() -> None:
-            self._record(self.journal.end_drawing(job_id, state, words, certain=certain, possible=possible))
-            self._tell_step(state, words, job_id, figures)
+            job = self.journal.end_drawing(job_id, state, words, certain=certain, possible=possible, reason=reason)
+            self._record(job)
+            self._tell_step(job, figures)
 
         self._at_last(job_id, step)
 
@@ -203,8 +210,7 @@ class Desk:
 
     def next_to_draw(self) -> Job | None:
         """The planned job that comes next, None where none is planned."""
-        ready = self._worked_on(*_READY)
-        return ready[0] if ready else None
+        return next(iter(self._worked_on(*_READY)), None)
 
     def let_wait(self, words: str) -> None:
         """The planned jobs wait, and `words` say for what."""
@@ -222,7 +228,7 @@ class Desk:
             job = self.find(job_id)
             if job.state in _BEFORE_INK:
                 self.step(job.id, State.CANCELLED, _DROPPED)
-            elif job.state in (State.PLANNING, State.DRAWING):
+            elif job.state in (State.PLANNING, *UNDER_THE_PEN):
                 self._cancelled.add(job.id)
             else:
                 raise LinedrawError(f"job {job.id} is {job.state.value} already: there is nothing to cancel")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import time
 from collections.abc import Callable
@@ -11,17 +10,18 @@ from pathlib import Path
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.choices import NOT_PLACED, program_left
 from daemon.jobs.desk import Desk
-from daemon.jobs.folder import write_durably
 from daemon.jobs.journal import Job
-from daemon.jobs.moves import Moves
+from daemon.jobs.kept_ink import add_to_report, keep_ink
+from daemon.jobs.moves import Moves, homing
 from daemon.jobs.open_machine import InkMm, Open, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
 from daemon.jobs.progress import Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
 from daemon.jobs.retry import IDLE_S, retry_after_s
-from daemon.jobs.states import HOW_ON, OUTCOMES, State, outcome_of
+from daemon.jobs.standing import forget_place, stand
+from daemon.jobs.states import HOW_ON, OUTCOMES, Reason, State, outcome_of
 from daemon.shapes import Program
-from firmware_protocol.session import Accepted, Ended, Event, Verdict
+from firmware_protocol.session import Accepted, Ended, Event, Paused, Resumed, Verdict, Waiting
 
 _ENDED = "linedrawd ended in the middle of a drawing: set the pen to its origin and put in a new sheet"
 """The next one opens the port anew, which makes an origin of wherever the pen stands."""
@@ -54,6 +54,8 @@ class Drawing:
         self._machine: OpenMachine | None = None
         self._placed = False
         self._progress: Progress | None = None
+        self._drawn = ""
+        """The job that is being drawn."""
         self.missing: NoMachine | MachineFault | None = None
         """Why there is no machine to draw with; None when there is one, and before the first look."""
         self._told, self._retry_at_s = "", float("-inf")
@@ -113,6 +115,7 @@ class Drawing:
         machine, self._machine = self._machine, None
         if machine:
             machine.close()
+            forget_place(self._desk, "the machine's port was closed")
 
     def _connect(self) -> None:
         try:
@@ -186,6 +189,7 @@ class Drawing:
         why = self._machine.rests
         if why:
             self._desk.let_wait(why)
+            forget_place(self._desk, "the motors were switched off")
         return bool(why)
 
     def _listen(self) -> None:
@@ -199,21 +203,24 @@ class Drawing:
         assert self._machine is not None
         folder = self._desk.folders.path(job.id)
         try:
-            program = program_left(job, folder, self._load(folder / "program.gcode"))
+            # A machine that knows its place is not sent to look for it again.
+            without = homing(self._moves) if self._placed else ()
+            program = program_left(job, folder, self._load(folder / "program.gcode"), without=without)
         except LinedrawError as error:
             self._desk.step_at_last(job.id, State.FAILED, str(error))
             return
         if job.possible and not self.placed:
             self._desk.hold(NOT_PLACED)
-            self._desk.step_at_last(job.id, State.INTERRUPTED, NOT_PLACED)
+            self._desk.step_at_last(job.id, State.INTERRUPTED, NOT_PLACED, reason=Reason.POSITION_UNKNOWN)
             return
         times_s = self._machine.line_times_s(program)
+        self._drawn = job.id
         self._progress = Progress(self._desk.show, program, times_s, now=self._machine.now)
         self._desk.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
         self._asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
         ended = self._ended(job, program, Ahead(self._promises(job, program), program, times_s))
-        self._progress = None
+        self._progress, self._drawn = None, ""
         self._asked.accept()
         self._placed = ended.position_known and (self._placed or ended.strokes_possible > job.possible)
         self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
@@ -238,18 +245,24 @@ class Drawing:
     def _record(self, job: Job, program: Program, ended: Ended, *, real_s: float) -> None:
         assert self._machine is not None
         port, ink = self._machine.name, self._machine.take_ink()
-        if not (ended.verdict in _PORT_STAYS_OPEN and ended.position_known):
+        known = ended.verdict in _PORT_STAYS_OPEN and ended.position_known
+        if not known:
             self._give_back()
         self._report(job, ink, real_s)
         self._inked(self._desk.folders.path(job.id), ended.strokes_certain)
         cancelled = self._desk.is_cancelled(job.id)
-        state = outcome_of(ended.verdict, touched=ended.strokes_possible > 0, cancelled=cancelled)
+        state, reason = outcome_of(
+            ended.verdict,
+            touched=ended.strokes_possible > 0,
+            cancelled=cancelled,
+            position_known=known and not self._desk.ending,
+        )
         if not self._desk.held:
             self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=state in (State.CANCELLED, State.DONE))
         extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)
         if state is State.INTERRUPTED:
             words += f"; {OUTCOMES[ended.verdict].remedy}, then {HOW_ON.format(job=job.id)}"
-        self._desk.end_drawing(job.id, state, words, extent=extent, real_s=real_s, port=port)
+        self._desk.end_drawing(job.id, state, words, extent=extent, reason=reason, real_s=real_s, port=port)
 
     def _go_on_or_hold(self, why: str, *, on: bool) -> None:
         if on:
@@ -265,10 +278,9 @@ class Drawing:
         """The seconds into report.json, the ink beside it, and have it measured. A job does not fail for its report."""
         folder = self._desk.folders.path(job.id)
         try:
-            _add_to_report(folder / "report.json", real_s)
+            add_to_report(folder / "report.json", real_s)
             if ink is not None:
-                strokes = [*(_ink_of(folder) if job.possible else []), *ink]
-                write_durably(folder / "ink.json", json.dumps({"strokes": strokes}).encode())
+                keep_ink(folder, ink, more=job.possible > 0)
             if ink is not None and not self._desk.ending:
                 self._measure(folder)
         except (LinedrawError, ValueError) as error:
@@ -277,18 +289,7 @@ class Drawing:
     def _hear(self, event: Event) -> None:
         if self._progress:
             self._progress.hear(event)
-        if not isinstance(event, Accepted):
+        if isinstance(event, Paused | Resumed) or (isinstance(event, Waiting) and event.cause):
+            stand(event, self._drawn, self._desk, self._desk.show)
+        elif not isinstance(event, Accepted):
             tell(event, say=self._desk.say, show=self._desk.show)
-
-
-def _ink_of(folder: Path) -> InkMm:
-    """What an earlier part of the drawing has left."""
-    path = folder / "ink.json"
-    ink: InkMm = json.loads(path.read_text(encoding="utf-8"))["strokes"] if path.exists() else []
-    return ink
-
-
-def _add_to_report(path: Path, real_s: float) -> None:
-    if path.exists():
-        report = json.loads(path.read_text(encoding="utf-8")) | {"real_s": real_s}
-        write_durably(path, (json.dumps(report, indent=2) + "\n").encode())

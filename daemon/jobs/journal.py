@@ -13,13 +13,14 @@ from pathlib import Path
 
 from daemon.durable import sync_folder
 from daemon.errors import DiskTrouble
-from daemon.jobs.states import State, check_step
+from daemon.jobs.states import UNDER_THE_PEN, Reason, State, check_step, ink_in_words, meaning_of
 
-VERSION = 2
+VERSION = 3
 SCHEMA = (
     """
 CREATE TABLE IF NOT EXISTS events (
-    number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, words TEXT NOT NULL
+    number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, words TEXT NOT NULL,
+    reason TEXT NOT NULL DEFAULT ''
 )
 """,
     """
@@ -53,13 +54,14 @@ class Job:
     strokes: int = 0
     certain: int = 0
     possible: int = 0
+    reason: Reason = Reason.NONE
 
     @property
     def on_paper(self) -> str:
         """Which strokes are certainly, possibly and not drawn, in words."""
         if self.possible == UNTOLD:
             return "how far it came is not known"
-        return f"of {self.strokes} strokes {self.certain} are certainly drawn, none from {self.possible} on is touched"
+        return ink_in_words(self.strokes, self.certain, self.possible)
 
 
 class DamagedJournal(DiskTrouble):
@@ -114,6 +116,12 @@ class Journal:
         with self._together():
             for table in SCHEMA:
                 self._rows.execute(table)
+            if 0 < version < 3:
+                self._rows.execute("ALTER TABLE events ADD COLUMN reason TEXT NOT NULL DEFAULT ''")
+                self._rows.execute(
+                    "UPDATE events SET reason = ? WHERE state = ?",
+                    (Reason.POSITION_UNKNOWN.value, State.INTERRUPTED.value),
+                )
             if version == 1:
                 # It did not write down how far a drawing came, so that every stroke of one that was begun is possible.
                 self._rows.execute(
@@ -123,10 +131,10 @@ class Journal:
             self._rows.execute(f"PRAGMA user_version={VERSION}")
 
     def _read(self) -> None:
-        rows = self._rows.execute("SELECT at_s, job, state, words FROM events ORDER BY number").fetchall()
-        for at_s, job, state, words in rows:
+        rows = self._rows.execute("SELECT at_s, job, state, words, reason FROM events ORDER BY number").fetchall()
+        for at_s, job, state, words, reason in rows:
             if job:
-                self._remember(at_s, job, state, words)
+                self._remember(at_s, job, state, words, Reason(reason))
             else:
                 self._note(state, words)
         for job, *extent in self._rows.execute("SELECT job, strokes, certain, possible FROM ink").fetchall():
@@ -158,14 +166,15 @@ class Journal:
         with self._lock, self._together():
             self._insert_ink(job.id, job.strokes, job.certain, job.possible)
             self._insert(job.id, State.QUEUED.value, job.name)
-            self._insert(job.id, job.state.value, job.words)
+            self._insert(job.id, job.state.value, job.words, job.reason)
         self._put(job)
 
-    def step(self, job_id: str, state: State, words: str = "") -> Job:
-        """The job goes on to `state`. Raises ValueError when the table of states lacks that step."""
+    def step(self, job_id: str, state: State, words: str = "", *, reason: Reason = Reason.NONE) -> Job:
+        """The job goes on to `state`. Raises ValueError when the tables lack that step, or the state that reason."""
         with self._lock:
             check_step(self._jobs[job_id].state, state)
-            return self._append(job_id, state.value, words)
+            meaning_of(state, reason)
+            return self._append(job_id, state.value, words, reason)
 
     def promise(self, job_id: str, *, strokes: int, certain: int, possible: int) -> None:
         """Before a byte of them is sent: the strokes before number `possible` may come onto the sheet.
@@ -178,16 +187,19 @@ class Journal:
             self._insert_ink(job_id, *extent)
             self._know(job_id, *extent)
 
-    def end_drawing(self, job_id: str, state: State, words: str, *, certain: int, possible: int) -> Job:
+    def end_drawing(
+        self, job_id: str, state: State, words: str, *, certain: int, possible: int, reason: Reason = Reason.NONE
+    ) -> Job:
         """The step that ends a drawing, and what is known then of the sheet, in one."""
         with self._lock:
             before = self._jobs[job_id]
             check_step(before.state, state)
+            meaning_of(state, reason)
             extent = before.strokes, certain, possible
             with self._together():
                 self._insert_ink(job_id, *extent)
-                at_s = self._insert(job_id, state.value, words)
-            self._remember(at_s, job_id, state.value, words)
+                at_s = self._insert(job_id, state.value, words, reason)
+            self._remember(at_s, job_id, state.value, words, reason)
             return self._know(job_id, *extent)
 
     def new_sheet(self) -> None:
@@ -211,13 +223,13 @@ class Journal:
         with self._lock:
             self._rows.close()
 
-    def _append(self, job_id: str, state: str, words: str) -> Job:
-        return self._remember(self._insert(job_id, state, words), job_id, state, words)
+    def _append(self, job_id: str, state: str, words: str, reason: Reason = Reason.NONE) -> Job:
+        return self._remember(self._insert(job_id, state, words, reason), job_id, state, words, reason)
 
-    def _insert(self, job_id: str, state: str, words: str) -> float:
-        at_s = self._now()
-        self._write("INSERT INTO events (at_s, job, state, words) VALUES (?, ?, ?, ?)", (at_s, job_id, state, words))
-        return at_s
+    def _insert(self, job_id: str, state: str, words: str, reason: Reason = Reason.NONE) -> float:
+        values = (self._now(), job_id, state, words, reason.value)
+        self._write("INSERT INTO events (at_s, job, state, words, reason) VALUES (?, ?, ?, ?, ?)", values)
+        return values[0]
 
     def _insert_ink(self, job_id: str, strokes: int, certain: int, possible: int) -> None:
         self._write("INSERT OR REPLACE INTO ink VALUES (?, ?, ?, ?)", (job_id, strokes, certain, possible))
@@ -240,14 +252,14 @@ class Journal:
         except sqlite3.Error as error:
             raise DiskTrouble(f"the journal {self._path} cannot be written ({error}): {_remedy(error)}") from None
 
-    def _remember(self, at_s: float, job_id: str, state: str, words: str) -> Job:
+    def _remember(self, at_s: float, job_id: str, state: str, words: str, reason: Reason) -> Job:
         before = self._jobs.get(job_id, Job(job_id, words, State.QUEUED, "", at_s))
         said = "" if job_id not in self._jobs else words
-        if state == State.DRAWING.value:
+        if state == State.DRAWING.value and before.state is not State.PAUSED:
             self._sheet_before, self.sheet_used = self.sheet_used, True
-        elif before.state is State.DRAWING and state == State.PLANNED.value:
+        elif before.state in UNDER_THE_PEN and state == State.PLANNED.value:
             self.sheet_used = self._sheet_before
-        return self._put(replace(before, state=State(state), words=said, changed_s=at_s))
+        return self._put(replace(before, state=State(state), words=said, changed_s=at_s, reason=reason))
 
     def _put(self, job: Job) -> Job:
         if job.id in self._jobs:
@@ -266,22 +278,6 @@ class Journal:
             self.sheet_used = False
         else:
             self.held = words if what == _HELD else ""
-
-
-def set_aside(path: Path) -> Path:
-    """Rename a damaged journal and what SQLite keeps beside it; returns its new name. Raises DiskTrouble."""
-    number = 1
-    while (aside := path.with_name(f"{path.name}.corrupt-{number}")).exists():
-        number += 1
-    try:
-        # The journal goes last: a cut before that finds it again, and damaged as it was.
-        for suffix in ("-wal", "-shm", ""):
-            if (part := path.with_name(path.name + suffix)).exists():
-                part.rename(aside.with_name(aside.name + suffix))
-        sync_folder(path.parent)
-    except OSError as error:
-        raise DiskTrouble(f"{path} cannot be moved aside ({error.strerror}): correct its folder's rights") from None
-    return aside
 
 
 def _back_up(rows: sqlite3.Connection, copy: Path) -> None:

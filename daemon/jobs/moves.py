@@ -149,6 +149,14 @@ class NoMoves:
         raise LinedrawError(self._why)
 
 
+def homing(moves: Moves) -> Sequence[ProgramLine]:
+    """The lines that find the machine's home; none where it has no such."""
+    try:
+        return moves.home().lines
+    except LinedrawError:
+        return ()
+
+
 def _known(at_mm: Vector | None) -> PointMm:
     if at_mm is None:
         raise LinedrawError("the machine does not say where its pen stands: home it first")

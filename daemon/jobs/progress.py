@@ -7,8 +7,9 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from daemon.jobs.states import ink_in_words
 from daemon.shapes import Program
-from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Sent, Verdict, Waiting
+from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Resumed, Sent, Verdict, Waiting
 
 AHEAD = 18
 """So many lines a controller acknowledges before it has drawn them: those that its planner holds."""
@@ -33,13 +34,18 @@ class Progress:
 
     def hear(self, event: Event) -> None:
         if isinstance(event, Accepted):
-            if self._paused or self._line < 0:
-                self._begun_s, self._paused = self._now() - self._done_s, False
+            if self._line < 0:
+                self._begun_s = self._now()
             self._line = event.line
-            self._show(state="drawing", words="", **self._figures())
-        elif self._line >= 0 and not self._paused:
-            self._show(**self._figures())
-            self._paused = isinstance(event, Paused)
+            if not self._paused:
+                # What a machine that stands takes into its buffer is no progress.
+                self._show(state="drawing", words="", **self._figures())
+        elif isinstance(event, Resumed):
+            self._begun_s, self._paused = self._now() - self._done_s, False
+        elif not self._paused:
+            if self._line >= 0:
+                self._show(**self._figures())
+            self._paused = isinstance(event, Paused) or (isinstance(event, Waiting) and bool(event.cause))
 
     def _figures(self) -> dict[str, Any]:
         all_s, now = self._times_s[-1] if self._times_s else 0.0, self._now()
@@ -66,9 +72,6 @@ def tell(event: Event, *, say: Callable[..., None], show: Callable[..., None]) -
         case Waiting(why=why):
             say(why, level=logging.WARNING)
             show(state="waiting", words=why)
-        case Paused(stroke=stroke):
-            say("paused, the pen is up", stroke=stroke)
-            show(state="paused", words="`linedrawd resume` goes on, `linedrawd stop` ends it")
         case Sent(drawn_in_s=seconds):
             say("everything has been sent", drawn_in_s=seconds)
             show(words="everything has been sent, when it is drawn is an estimate", seconds_left=round(seconds, 1))
@@ -81,7 +84,4 @@ def end_in_words(ended: Ended, strokes: int) -> str:
             return f"all {strokes} strokes were sent and, by the time model, are drawn: the machine does not say so"
         return f"all {strokes} strokes are drawn"
     pen = "the pen is up" if ended.pen_lifted else "the pen may be down"
-    return (
-        f"{ended.why} (of {strokes} strokes {ended.strokes_certain} are certainly drawn, none after the first "
-        f"{ended.strokes_possible} is touched; {pen})"
-    )
+    return f"{ended.why} ({ink_in_words(strokes, ended.strokes_certain, ended.strokes_possible)}; {pen})"

@@ -8,10 +8,9 @@ from pathlib import Path
 
 from daemon.jobs.folder import write_durably
 from daemon.jobs.journal import UNTOLD, Job
-from daemon.jobs.states import State
+from daemon.jobs.states import OVER, UNDER_THE_PEN, Reason, State, meaning_of
 
 RECORD_NAME = "job.json"
-_ENDS = (State.DONE, State.FAILED, State.CANCELLED, State.INTERRUPTED)
 _LOST = "the journal was lost and nobody has written down how far this drawing came: look at the sheet"
 
 
@@ -21,6 +20,7 @@ def write_record(folder: Path, job: Job) -> None:
     Raises DiskTrouble, and FileNotFoundError where the folder has gone.
     """
     told = {"name": job.name, "state": job.state.value, "words": job.words, "changed_s": job.changed_s}
+    told |= {"reason": job.reason.value, "remedy": meaning_of(job.state, job.reason).remedy}
     told |= {"strokes": job.strokes, "certain": job.certain, "possible": job.possible}
     write_durably(folder / RECORD_NAME, json.dumps(told).encode())
 
@@ -33,14 +33,21 @@ def read_record(folder: Path) -> Job | None:
     try:
         told = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
         extent = int(told["strokes"]), int(told["certain"]), int(told["possible"])
-        job = Job(
-            folder.name, str(told["name"]), State(told["state"]), str(told["words"]), float(told["changed_s"]), *extent
-        )
+        state, reason = State(told["state"]), Reason(told.get("reason", ""))
+        words, changed_s = str(told["words"]), float(told["changed_s"])
+        job = Job(folder.name, str(told["name"]), state, words, changed_s, *extent, reason)
     except FileNotFoundError:
         planned = (folder / "program.gcode").exists()
-        return Job(folder.name, folder.name, State.INTERRUPTED, _LOST, 0.0, possible=UNTOLD) if planned else None
+        return _untold(Job(folder.name, folder.name, State.DRAWING, "", 0.0)) if planned else None
     except (OSError, ValueError, KeyError, TypeError):
-        return Job(folder.name, folder.name, State.INTERRUPTED, _LOST, 0.0, possible=UNTOLD)
-    if job.state is State.DRAWING:
-        return replace(job, state=State.INTERRUPTED, words=_LOST, possible=UNTOLD)
-    return job if job.state in _ENDS else replace(job, state=State.QUEUED, words="")
+        return _untold(Job(folder.name, folder.name, State.DRAWING, "", 0.0))
+    if job.state in UNDER_THE_PEN:
+        return _untold(job)
+    if job.state is State.INTERRUPTED and job.reason is not Reason.POWER:
+        # Whoever has lost its journal has been away, and the machine may have been moved meanwhile.
+        return replace(job, reason=Reason.POSITION_UNKNOWN)
+    return job if job.state in OVER else replace(job, state=State.QUEUED, words="", reason=Reason.NONE)
+
+
+def _untold(job: Job) -> Job:
+    return replace(job, state=State.INTERRUPTED, words=_LOST, possible=UNTOLD, reason=Reason.POSITION_UNKNOWN)

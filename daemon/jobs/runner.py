@@ -12,7 +12,7 @@ from daemon.jobs.drawing import Drawing
 from daemon.jobs.orders import MachineOrder
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
-from daemon.jobs.states import State
+from daemon.jobs.states import UNDER_THE_PEN, State
 from daemon.pulse import Heart, Pulse
 
 DRAWING_WITHIN_S = 90.0
@@ -62,7 +62,7 @@ class Runner:
         before = self._desk.cancel(job_id)
         if before is State.PLANNING:
             self._pool.interrupt()
-        elif before is State.DRAWING:
+        elif before in UNDER_THE_PEN:
             self._drawing.stop()
         return f"job {self._desk.find(job_id).id} is dropped (it was {before.value})"
 

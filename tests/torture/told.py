@@ -11,9 +11,7 @@ from pathlib import Path
 
 from daemon.jobs.states import ALLOWED, OVER, State
 
-_FIGURES = re.compile(
-    r"of \d+ strokes (\d+) are certainly drawn, none (?:after the first|from) (\d+)(?: on)? is touched"
-)
+_FIGURES = re.compile(r"of \d+ strokes (\d+) are certainly drawn, none from (\d+) on is touched")
 _STATES = {state.value for state in State}
 _ALL = re.compile(r"all (\d+) strokes are drawn")
 

@@ -25,7 +25,7 @@ from daemon.machine.link import Promise, promise_nothing
 from daemon.program.file import load_program
 from daemon.shapes import Program
 from firmware_protocol.ink import Vector
-from firmware_protocol.session import Accepted, Ended, Event, Paused, Ready, Verdict
+from firmware_protocol.session import Accepted, Ended, Event, Paused, Ready, Resumed, Verdict
 from tests.daemon.jobs.test_pool import PLANNER, settings_with
 
 
@@ -114,7 +114,7 @@ class InstantMachine:
         self.heard(Paused(1))
 
     def resume(self) -> None:
-        pass
+        self.heard(Resumed())
 
     def stop(self) -> None:
         self.stops += 1

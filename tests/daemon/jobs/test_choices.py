@@ -55,8 +55,8 @@ def test_again_makes_another_job_of_the_same_picture(bench: Bench, choices: Choi
     job = bench.planned()
     (bench.desk.folders.path(job) / "side.toml").write_text("size_mm = [50, 50]")
     bench.drawing.turn()
-    assert choices.again("1") == "job 000002-source draws a.png once more"
-    assert (bench.desk.folders.path("000002-source") / "side.toml").read_text() == "size_mm = [50, 50]"
+    assert choices.again("1") == "job 000002-a draws a.png once more"
+    assert (bench.desk.folders.path("000002-a") / "side.toml").read_text() == "size_mm = [50, 50]"
     bench.planning.turn()
     bench.drawing.turn()
     assert [(job.name, job.state) for job in bench.journal.jobs()] == [("a.png", State.DONE)] * 2

@@ -13,7 +13,9 @@ import pytest
 from daemon.errors import DiskTrouble
 from daemon.jobs.journal import UNTOLD, DamagedJournal, Journal
 from daemon.jobs.open_journal import open_journal
-from daemon.jobs.states import State
+from daemon.jobs.states import Reason, State
+
+LOST = Reason.POSITION_UNKNOWN
 
 
 @contextmanager
@@ -86,7 +88,7 @@ def test_a_step_that_a_full_disk_refuses_has_not_happened(tmp_path: Path) -> Non
 
 def test_a_journal_of_a_newer_version_is_refused(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "j")) as newer:
-        newer.execute("PRAGMA user_version=3")
+        newer.execute("PRAGMA user_version=4")
     with pytest.raises(DiskTrouble, match="newer version"):
         Journal(tmp_path / "j")
 
@@ -131,7 +133,7 @@ def test_a_promise_that_a_full_disk_refuses_is_none(tmp_path: Path) -> None:
 def test_the_end_of_a_drawing_says_what_its_verdict_knows(tmp_path: Path) -> None:
     with closing(in_drawing(tmp_path / "j")) as journal:
         journal.promise("1", strokes=9, certain=0, possible=8)
-        journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5)
+        journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5, reason=LOST)
     with closing(Journal(tmp_path / "j")) as journal:
         assert journal.jobs()[0].on_paper == "of 9 strokes 3 are certainly drawn, none from 5 on is touched"
         assert journal.jobs()[0].state is State.INTERRUPTED
@@ -141,9 +143,9 @@ def test_an_end_that_a_full_disk_refuses_has_not_happened(tmp_path: Path) -> Non
     with closing(in_drawing(tmp_path / "j")) as journal:
         journal.promise("1", strokes=9, certain=0, possible=8)
         with full_disk(64), pytest.raises(DiskTrouble):
-            journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5)
+            journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5, reason=LOST)
         assert (journal.jobs()[0].state, journal.jobs()[0].possible) == (State.DRAWING, 8)
-        journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5)
+        journal.end_drawing("1", State.INTERRUPTED, "alarm", certain=3, possible=5, reason=LOST)
 
 
 def test_a_sheet_on_which_nothing_was_drawn_is_unused_again(tmp_path: Path) -> None:
@@ -171,14 +173,33 @@ def test_a_clock_that_jumps_changes_no_order(tmp_path: Path) -> None:
 
 
 V1 = "CREATE TABLE events (number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, "
+INK = "CREATE TABLE ink (job TEXT PRIMARY KEY, strokes INTEGER NOT NULL, certain INTEGER NOT NULL, possible INTEGER "
+ROWS_1 = [("1", "queued", "a.png"), ("1", "drawing", ""), ("2", "queued", "b.png")]
 
 
-def older(path: Path) -> None:
+def older(path: Path, rows_then: list[tuple[str, str, str]] = ROWS_1, *, version: int = 1) -> None:
     with closing(sqlite3.connect(path, isolation_level=None)) as rows:
         rows.execute(V1 + "words TEXT NOT NULL)")
-        for job, state, words in [("1", "queued", "a.png"), ("1", "drawing", ""), ("2", "queued", "b.png")]:
+        for job, state, words in rows_then:
             rows.execute("INSERT INTO events (at_s, job, state, words) VALUES (1.0, ?, ?, ?)", (job, state, words))
-        rows.execute("PRAGMA user_version=1")
+        if version == 2:
+            rows.execute(INK + "NOT NULL)")
+            rows.execute("INSERT INTO ink VALUES ('1', 9, 3, 5)")
+        rows.execute(f"PRAGMA user_version={version}")
+
+
+def test_a_journal_without_reasons_is_migrated_and_knows_no_place(tmp_path: Path) -> None:
+    then = [("1", "queued", "a.png"), ("1", "drawing", ""), ("1", "interrupted", "cut"), ("2", "queued", "b.png")]
+    older(tmp_path / "j", then, version=2)
+    with closing(Journal(tmp_path / "j")) as journal:
+        cut, queued = journal.jobs()
+        assert (cut.state, cut.reason, cut.certain) == (State.INTERRUPTED, Reason.POSITION_UNKNOWN, 3)
+        assert (queued.state, queued.reason) == (State.QUEUED, Reason.NONE)
+        journal.step("1", State.INTERRUPTED, "known again", reason=Reason.POSITION_KNOWN)
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert journal.jobs()[0].reason is Reason.POSITION_KNOWN
+    with closing(sqlite3.connect(tmp_path / "j.version-2")) as backup:
+        assert backup.execute("PRAGMA user_version").fetchone() == (2,)
 
 
 def test_a_journal_of_an_older_version_is_migrated_and_kept(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from daemon.config import GrblMachine
 from daemon.jobs.devices import opened, program_of
 from daemon.jobs.progress import Progress
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
-from firmware_protocol.session import Accepted, Event, Paused, Status, Verdict
+from firmware_protocol.session import Accepted, Event, Paused, Resumed, Status, Verdict, Waiting
 
 STATUS = Status("Run", (0.0, 0.0, 0.0))
 
@@ -54,7 +54,8 @@ def test_seconds_left_are_within_five_percent_of_the_truth_from_ten_percent_on(s
     assert worst <= 0.05
 
 
-def test_a_pause_takes_nothing_from_the_time_that_is_left() -> None:
+@pytest.mark.parametrize("stands", [Paused(0), Waiting("the door is open", "door")])
+def test_a_pause_takes_nothing_from_the_time_that_is_left(stands: Event) -> None:
     lines = tuple(ProgramLine(f"G1 X{number}", 0) for number in range(100))
     shown: dict[str, Any] = {}
     now = [50.0]
@@ -65,10 +66,14 @@ def test_a_pause_takes_nothing_from_the_time_that_is_left() -> None:
         now[0] = 50.0 + max(0, line - 10)
     assert shown["seconds_left"] == pytest.approx(100 - 28)
     now[0] += 1.0
-    progress.hear(Paused(0))
+    progress.hear(stands)
     now[0] += 1000.0
     progress.hear(STATUS)
     assert shown["seconds_left"] == pytest.approx(100 - 30)
+    shown["state"] = "paused"
+    progress.hear(Accepted(39))
+    assert shown["state"] == "paused"
+    progress.hear(Resumed())
     progress.hear(Accepted(40))
     assert shown["seconds_left"] == pytest.approx(100 - 30)
     now[0] += 1.0

@@ -9,7 +9,7 @@ import pytest
 
 from daemon.config import Keep
 from daemon.jobs.retention import DAY_S, EVERY_S, Retention
-from daemon.jobs.states import State
+from daemon.jobs.states import Reason, State
 from tests.daemon.jobs.bench import Bench
 
 WAYS = {
@@ -20,6 +20,8 @@ WAYS = {
     State.PLANNED: (State.PLANNING, State.PLANNED),
     State.QUEUED: (),
 }
+
+REASONS = {State.INTERRUPTED: Reason.POSITION_UNKNOWN}
 
 
 @pytest.fixture
@@ -32,7 +34,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
 def put(bench: Bench, state: State, *, size: int = 0) -> str:
     job = bench.drop(f"{state.value}.png")
     for step in WAYS[state]:
-        bench.desk.step(job, step)
+        bench.desk.step(job, step, reason=REASONS.get(step, Reason.NONE))
     (bench.desk.folders.path(job) / "preview.png").write_bytes(b"x" * size)
     return job
 

@@ -87,7 +87,7 @@ def test_a_fault_interrupts_the_job_and_no_further_one_starts_until_a_person_say
         bench.drawing.turn()
         bench.now_s += 100.0
     assert bench.states() == ["interrupted", "planned"]
-    assert "1 are certainly drawn, none after the first 2 is touched; the pen may be down" in bench.words(0)
+    assert "1 are certainly drawn, none from 2 on is touched; the pen may be down" in bench.words(0)
     assert (bench.machine.drawn, bench.machine.opened, bench.machine.closed) == (1, 1, 1)
     assert bench.shown["held"] == f"{verdict.value} at line 7: look at it"
     assert bench.shown["port"] == ""
@@ -148,7 +148,7 @@ def test_a_fault_that_the_link_raises_interrupts_too(bench: Bench) -> None:
     bench.planned()
     bench.drawing.turn()
     assert bench.states() == ["interrupted"]
-    assert "0 are certainly drawn, none after the first 2 is touched" in bench.words()
+    assert "0 are certainly drawn, none from 2 on is touched" in bench.words()
 
 
 def test_one_drawing_a_sheet(tmp_path: Path, shared_pool: Pool) -> None:

@@ -1,0 +1,61 @@
+"""A pen that stands: the job is paused until it goes on; and one of which the place is forgotten."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from daemon.errors import DiskTrouble
+from daemon.jobs.states import Reason, State
+from firmware_protocol.session import Paused, Resumed, Waiting
+
+if TYPE_CHECKING:
+    from daemon.jobs.desk import Desk
+
+Stand: TypeAlias = Paused | Waiting | Resumed
+_PAUSED = "paused{where}, the pen is up: `linedrawd resume` goes on, `linedrawd stop` ends it"
+_GOES_ON = "the machine goes on"
+_CAUSES: dict[Literal["hold", "door", "sleep", ""], Reason] = {
+    "hold": Reason.AT_THE_MACHINE,
+    "door": Reason.DOOR,
+    "sleep": Reason.POWER,
+}
+
+
+def stand(event: Stand, job_id: str, desk: Desk, show: Callable[..., None]) -> None:
+    """Record and tell it. job_id: of the job that is drawn; "" where the machine moves without one."""
+    state, reason, words = _what(event)
+    show(state=state.value, reason=reason.value, words="" if state is State.DRAWING else words)
+    job = desk.journal.job(job_id)
+    if job is None:
+        desk.say(words, level=logging.WARNING)
+    elif (job.state, job.reason) != (state, reason):
+        _step(desk, job_id, state, reason, words)
+
+
+def forget_place(desk: Desk, why: str) -> None:
+    """The machine no longer knows where its pen is, so that what it had left in order cannot simply go on."""
+    for job in desk.journal.jobs(State.INTERRUPTED):
+        if job.reason is Reason.POSITION_KNOWN:
+            words = f"{why}, so the place of the pen is no longer known ({job.on_paper})"
+            _step(desk, job.id, State.INTERRUPTED, Reason.POSITION_UNKNOWN, words)
+
+
+def _step(desk: Desk, job_id: str, state: State, reason: Reason, words: str) -> None:
+    """A full disk keeps nobody from going on: a start takes every place for forgotten, and the promises for true."""
+    try:
+        desk.step(job_id, state, words, reason=reason)
+    except DiskTrouble as error:
+        desk.trouble(str(error), job=job_id)
+
+
+def _what(event: Stand) -> tuple[State, Reason, str]:
+    match event:
+        case Paused(stroke=stroke):
+            where = "" if stroke is None else f" before stroke {stroke}"
+            return State.PAUSED, Reason.PERSON, _PAUSED.format(where=where)
+        case Waiting(why=why, cause=cause):
+            return State.PAUSED, _CAUSES[cause], why
+        case Resumed():
+            return State.DRAWING, Reason.NONE, _GOES_ON
