@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from daemon.shapes import Arc, Line, Points, Stroke
 from daemon.toolpath.curves import CHORD_MM, fitted, points_of
 from daemon.toolpath.simplify import simplify
-from tests.daemon.toolpath.strokes import hausdorff_mm, open_or_closed
+from tests.daemon.toolpath.strokes import curves, hausdorff_mm, open_or_closed
 
 ERROR_MM, ALLOWED_MM = 0.05, 0.06
 
@@ -28,21 +28,6 @@ def ring(radius_mm: float, turn: float = math.tau, count: int = 400) -> Points:
     angle = np.linspace(0, turn, count + 1)
     points = np.stack([50 + radius_mm * np.cos(angle), 50 + radius_mm * np.sin(angle)], axis=1)
     points[-1] = points[0] if turn == math.tau else points[-1]
-    return points
-
-
-@st.composite
-def curves(draw: st.DrawFn) -> Points:
-    """Traced lines: a few waves along both axes, what tracing leaves of noise, open or closed, with a corner or not."""
-    count = draw(st.integers(20, 150))
-    t = np.linspace(0, 1, count)
-    waves = draw(st.lists(st.tuples(st.floats(0.2, 6), st.integers(1, 4), st.floats(0, 7)), min_size=2, max_size=4))
-    axes = [sum((a * np.sin(math.tau * n * t + p) for a, n, p in waves[k::2]), np.zeros(count)) for k in (0, 1)]
-    points = np.stack(axes, axis=1)
-    if draw(st.booleans()):
-        points[count // 3 :] += np.outer(np.arange(count - count // 3), draw(st.tuples(*[st.floats(-0.2, 0.2)] * 2)))
-    noise_mm = draw(st.sampled_from([0.0, 0.005, 0.03]))
-    points += np.random.default_rng(draw(st.integers(0, 99))).normal(0, noise_mm, points.shape)
     return points
 
 
