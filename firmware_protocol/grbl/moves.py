@@ -49,6 +49,11 @@ class Arc(NamedTuple):
         return math.dist(self.start[:2], self.centre)
 
     @property
+    def off_circle_mm(self) -> float:
+        """How far its end lies off the circle: GRBL takes 0.1 % of the radius, and goes straight there at the end."""
+        return abs(math.dist(self.end[:2], self.centre) - self.radius_mm)
+
+    @property
     def sweep(self) -> float:
         """The angle that is run through, in rad, always positive."""
         return self._turned(self.end) or math.tau

@@ -22,8 +22,6 @@ _RETURNS = {280, 300, 382, 383, 384, 385, 530}
 _SHIFTS = {100, 431, 550, 560, 570, 580, 590, 920, 921, 922, 923}
 """G10, G43.1, G55 to G59 and G92, times ten: reports speak of other coordinates behind them."""
 _AXES, _MODES = set("XYZ"), set("GMFS")
-_ROUNDNESS = 0.001
-"""GRBL takes arcs whose ends differ by so much of their radius."""
 _MOTIONS = {0, 10, 20, 30, 800}
 
 
@@ -107,7 +105,7 @@ class Path:
                 return None
             move = step.move or _standing(step)
             off_mm, part = move.nearest(place)
-            if off_mm <= within_mm + (_ROUNDNESS * move.radius_mm if isinstance(move, Arc) else 0.0):
+            if off_mm <= within_mm + (move.off_circle_mm if isinstance(move, Arc) else 0.0):
                 spots.append(Spot(line, part))
         return spots
 
