@@ -41,13 +41,14 @@ class Order(BaseModel):
     """What a person wants.
 
     job: of cancel, retry, again and frame, and of a resume `from_stroke`. at_once: of pause. x_mm, y_mm: of jog.
-    seconds: of pen down.
+    seconds: of pen down. machine: the one that is meant, where there are several.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     order: PersonOrderName | MachineOrderName
     job: str = Field(default="", max_length=200)
+    machine: str = Field(default="", max_length=32)
     from_stroke: int | None = Field(default=None, ge=0, le=10**7)
     at_once: bool = False
     x_mm: float = Field(default=0.0, ge=-10000, le=10000)

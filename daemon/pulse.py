@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 
 class Heart:
@@ -27,13 +27,24 @@ class Pulse:
     """The hearts of a daemon."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
-        self.drawing, self.planning, self.inbox = (Heart(name, now) for name in ("drawing", "planning", "inbox"))
+        self._now, self.planning = now, Heart("planning", now)
+        self._drawing: dict[str, Heart] = {}
+        self._inboxes: dict[str, Heart] = {}
 
-    def late(self, *, draws: bool) -> str:
+    def drawing(self, machine: str) -> Heart:
+        """That of the loop which draws on this machine."""
+        return self._drawing.setdefault(machine, Heart(f"drawing ({machine})", self._now))
+
+    def inbox(self, name: str) -> Heart:
+        """That of the loop which watches this inbox."""
+        return self._inboxes.setdefault(name, Heart(f"inbox ({name})", self._now))
+
+    def late(self, *, draw: Collection[str]) -> str:
         """Which loop stands still, in words; "" when all go on.
 
-        draws: something is being drawn, and only the loop that draws counts: no other one is worth a spoilt sheet.
+        draw: the machines that draw at this moment. Only their loops count then: no other one is worth a spoilt sheet.
         """
-        counted = (self.drawing,) if draws else (self.drawing, self.planning, self.inbox)
+        drawing = [self.drawing(machine) for machine in draw]
+        counted = drawing or [*self._drawing.values(), self.planning, *self._inboxes.values()]
         late = [f"the {heart.name} loop is {heart.late_s:.0f} s late" for heart in counted if heart.late_s > 0]
         return ", ".join(late)

@@ -9,8 +9,8 @@ import logging.handlers
 import os
 import threading
 import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +19,14 @@ from daemon.errors import DiskTrouble
 LOG_NAME = "linedrawd.log"
 JOB_LOG_NAME = "job.log"
 AT_MOST_EVERY_S = 1.0
+_BUSY = ("drawing", "paused", "waiting", "held", "idle", "starting")
+"""States of machines; the first one there is is told of all of them together."""
 
 
 @dataclass(frozen=True, slots=True)
-class Status:
-    """What status.json holds. `state` is one word, `reason` why it is so, `words` a sentence; seconds come from the
-    machine's time model.
+class MachineStatus:
+    """What is told of one machine. `state` is one word, `reason` why it is so, `words` a sentence; seconds come
+    from its time model.
 
     ink_m: metres that the pen has drawn; pen: says that it is worn.
     """
@@ -32,25 +34,36 @@ class Status:
     state: str = "starting"
     reason: str = ""
     words: str = ""
-    pid: int = 0
-    machine: str = ""
     firmware: str = ""
     port: str = ""
     job: str = ""
     picture: str = ""
-    stage: str = ""
     strokes_done: int = 0
     strokes_total: int = 0
     percent: float = 0.0
     seconds_left: float | None = None
-    planning: str = ""
-    jobs_queued: int = 0
-    jobs_waiting: int = 0
     held: str = ""
     ink_m: float = 0.0
     pen: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Status(MachineStatus):
+    """What status.json holds.
+
+    machines: each machine, by name. With one machine the fields beside it tell the same of that one; with several
+    only `state`, that of the busiest, and `words`, a few of each.
+    """
+
+    pid: int = 0
+    machine: str = ""
+    stage: str = ""
+    planning: str = ""
+    jobs_queued: int = 0
+    jobs_waiting: int = 0
     last_error: str = ""
     changed: str = ""
+    machines: Mapping[str, MachineStatus] = field(default_factory=dict)
 
 
 class StatusBoard:
@@ -77,6 +90,15 @@ class StatusBoard:
             values = {"reason": ""} | values
         with self._lock:
             self._status = replace(self._status, **values)
+        self._changed.set()
+
+    def change_machine(self, machine: str, **values: Any) -> None:
+        """What is told of this machine; the first call makes it known."""
+        with self._lock:
+            known = self._status.machines
+            machines = {**known, machine: replace(known.get(machine, MachineStatus()), **values)}
+            above = values if len(machines) == 1 else _of_several(machines)
+            self._status = replace(self._status, machine=", ".join(machines), machines=machines, **above)
         self._changed.set()
 
     def tick(self, now: float) -> float:
@@ -113,6 +135,24 @@ class StatusBoard:
     def stop(self) -> None:
         self._stopped.set()
         self._changed.set()
+
+
+def _of_several(machines: Mapping[str, MachineStatus]) -> dict[str, Any]:
+    """The fields that tell of all machines: of one that was there before the others nothing is left in them."""
+    states = {each.state for each in machines.values()}
+    busiest = next((state for state in _BUSY if state in states), min(states))
+    words = ", ".join(f"{name}: {in_words(each)}" for name, each in machines.items())
+    return asdict(MachineStatus()) | {"state": busiest, "words": words}
+
+
+def in_words(machine: MachineStatus) -> str:
+    """What one machine does, in a line."""
+    if machine.strokes_total:
+        drawn = f"{machine.strokes_done} of {machine.strokes_total} strokes, {machine.percent:.0f} %"
+        said = [f"{machine.state} {machine.picture}: {drawn}", machine.words]
+    else:
+        said = [machine.state, machine.words]
+    return ", ".join(words for words in said if words)
 
 
 class Diary:

@@ -12,6 +12,7 @@ from daemon.errors import LinedrawError
 from daemon.notify import Notifier
 from daemon.pulse import Pulse
 from daemon.status import Status
+from daemon.status import in_words as of_machine
 
 FED_OFTEN = 3
 """So many times in the period of the watchdog it is fed: one late turn of a busy computer ends nothing."""
@@ -100,7 +101,7 @@ class Supervision:
     def _feed(self, every_s: float | None) -> None:
         if every_s is None or self._now() - self._fed_s < every_s / 2:
             return
-        late = self._pulse.late(draws=self._status().state == "drawing")
+        late = self._pulse.late(draw=_draw(self._status()))
         if late and not self._late:
             self._say(f"{late}: the watchdog is not fed, systemd starts linedrawd anew", level=logging.ERROR)
         self._late = late
@@ -109,13 +110,13 @@ class Supervision:
             self._notifier.alive()
 
 
+def _draw(status: Status) -> list[str]:
+    """The machines that draw."""
+    return [name for name, machine in status.machines.items() if machine.state == "drawing"]
+
+
 def in_words(status: Status) -> str:
     """The status in a line."""
-    if status.strokes_total:
-        drawn = f"{status.strokes_done} of {status.strokes_total} strokes, {status.percent:.0f} %"
-        said = [f"{status.state} {status.picture}: {drawn}", status.words]
-    else:
-        said = [status.state, status.words]
     waiting = status.jobs_queued + status.jobs_waiting
-    said += [f"{waiting} waiting" if waiting else ""]
-    return ", ".join(words for words in said if words)
+    machine = status.words if len(status.machines) > 1 else of_machine(status)
+    return ", ".join([machine, f"{waiting} waiting"] if waiting else [machine])

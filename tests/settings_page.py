@@ -31,6 +31,9 @@ EXAMPLES: Mapping[str, Any] = {
     "pen_life_m": 1000.0,
     "motors_off_after_min": 10.0,
     "size_mm": (210.0, 297.0),
+    "box_mm": (180.0, 260.0),
+    "box_origin_mm": (15.0, 15.0),
+    "corner": "lower left",
     "holds_bytes": 512,
     "holds_blocks": 10,
 }

@@ -5,18 +5,19 @@ from __future__ import annotations
 import argparse
 from typing import Any, Literal
 
-from daemon.cli.options import add_places, settings_of
+from daemon.cli.options import add_places, add_which, settings_of, which_of
 from daemon.control import Order, give_order
 from daemon.errors import SettingsError
 
 _ORDERS: dict[Literal["next", "stop", "go", "drain"], tuple[str, str]] = {
     "next": (
         "a new sheet is in: draw the next picture",
-        "linedrawd next             # or put a file NEXT into the inbox",
+        "linedrawd next             # or put a file NEXT into the inbox\n  linedrawd next --machine left",
     ),
     "stop": (
         "stop the machine now, pen up; no further job starts until `go`",
-        "linedrawd stop             # then `linedrawd jobs` says what is on the paper",
+        "linedrawd stop             # all machines; then `linedrawd jobs` says what is on the paper\n"
+        "  linedrawd stop --machine left",
     ),
     "drain": (
         "finish what is being drawn and begin nothing more until `go`",
@@ -27,6 +28,9 @@ _ORDERS: dict[Literal["next", "stop", "go", "drain"], tuple[str, str]] = {
         "linedrawd go               # when the machine, the pen and the sheet are in order",
     ),
 }
+
+_WHICH = "which machine, by the name of its section; needed where there are several"
+_WHICH_OR_ALL = "which machine, by the name of its section; all where none is named"
 
 _OF_A_JOB: dict[Literal["cancel", "retry", "again"], tuple[str, str, str]] = {
     "cancel": (
@@ -56,6 +60,7 @@ def add_parser(subparsers: Any) -> None:
             epilog=f"example:\n  {example}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
+        add_which(parser, _WHICH_OR_ALL if order == "stop" else _WHICH)
         add_places(parser)
         parser.set_defaults(run=run, order=Order(order=order))
     parser = subparsers.add_parser(
@@ -66,6 +71,7 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--at-once", action="store_true", help="in the middle of the stroke, which is drawn on later")
+    add_which(parser, _WHICH_OR_ALL)
     add_places(parser)
     parser.set_defaults(run=run, order=None)
     parser = subparsers.add_parser(
@@ -79,6 +85,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("job", metavar="JOB", nargs="?", default="", help="its id, or the number at its beginning")
     parser.add_argument("--from-stroke", type=int, metavar="K", help="the first stroke to be drawn, from 0")
+    add_which(parser, _WHICH)
     add_places(parser)
     parser.set_defaults(run=run, order=None)
     for name, (words, description, example) in _OF_A_JOB.items():
@@ -96,7 +103,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """0 when the daemon did it. Raises LinedrawError when it refuses or does not run."""
-    order = args.order or _order(args)
+    order = (args.order or _order(args)).model_copy(update={"machine": which_of(args)})
     print(give_order(settings_of(args).paths.control, order))
     return 0
 

@@ -11,10 +11,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from daemon.cli.options import add_machine, add_places, add_record, record_of, settings_of, verbose
+from daemon.cli.options import add_machine, add_places, add_record, add_which, record_of, settings_of, verbose
 from daemon.errors import LinedrawError, MachineFault
 from daemon.jobs.states import State
-from daemon.service import Parts, parts_of
+from daemon.parts import Parts, parts_of
 from daemon.status import Status
 
 EXAMPLES = """examples:
@@ -35,6 +35,7 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("picture", metavar="PICTURE", type=Path)
+    add_which(parser)
     add_machine(parser)
     add_places(parser)
     add_record(parser)
@@ -45,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     """0 when it is drawn. Raises the LinedrawError that says why not."""
     # Whatever ends this command lifts the pen first.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    settings = settings_of(args, machine_needed=True)
+    settings = settings_of(args, machine_needed=True, one_machine=True)
     if not args.picture.is_file():
         raise LinedrawError(f"there is no file {args.picture}: give the path of a picture")
     with parts_of(settings, verbose=verbose(args), record=record_of(args)) as parts:
@@ -76,25 +77,27 @@ def _draw_watched(parts: Parts, job_id: str) -> None:
 
 def _draw(parts: Parts, job_id: str) -> None:
     """The person who asks stands beside the machine: their sheet is in. What was held before is held again."""
-    desk, held = parts.desk, parts.desk.held
-    desk.only = job_id
-    desk.new_sheet()
+    (station,) = parts.desk.stations.values()
+    held = station.held
+    parts.desk.only = job_id
+    station.new_sheet()
     if held:
-        desk.go()
+        station.go()
     parts.planning.turn()
-    if desk.find(job_id).state is State.PLANNED:
+    if parts.desk.find(job_id).state is State.PLANNED:
         _draw_planned(parts, job_id)
-    if held and not desk.held:
-        desk.hold(held)
+    if held and not station.held:
+        station.hold(held)
 
 
 def _draw_planned(parts: Parts, job_id: str) -> None:
     """Raises NoMachine or MachineFault where there is no machine, and MachineFault where it did not draw it all."""
-    parts.drawing.turn()
+    (drawing,) = parts.drawings.values()
+    drawing.turn()
     job = parts.desk.find(job_id)
-    if parts.drawing.missing and job.state is State.WAITING:
+    if drawing.missing and job.state is State.WAITING:
         parts.desk.cancel(job_id)
-        raise parts.drawing.missing
+        raise drawing.missing
     if job.state not in (State.DONE, State.CANCELLED):
         raise MachineFault(job.words)
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from daemon.cli.options import add_machine, add_places, settings_of, verbose
+from daemon.cli.options import add_machine, add_places, add_which, settings_of, verbose, which_of
 from daemon.control import NoDaemon, Order, give_order
 from daemon.errors import LinedrawError
-from daemon.service import machine_order, parts_of
+from daemon.parts import parts_of
+from daemon.service import machine_order
 
 EXAMPLES = """examples:
   linedrawd machine check           # who answers, its settings, what a drawing would want otherwise
@@ -16,6 +17,7 @@ EXAMPLES = """examples:
   linedrawd machine origin          # the sheet's corner lies where the pen stands
   linedrawd machine frame           # around the next drawing, pen up
   linedrawd machine pen down        # for 10 s, then up again
+  linedrawd machine park --machine left     # where there are several
 The running daemon does it, between two drawings. Where none runs, the port is opened for the one command, which resets
 many controllers: start the daemon first to keep an origin.
 """
@@ -52,6 +54,7 @@ def add_parser(subparsers: Any) -> None:
         if name == "jog":
             each.add_argument("x_mm", metavar="X", type=float, help="mm to the right")
             each.add_argument("y_mm", metavar="Y", type=float, help="mm up, away from you")
+        add_which(each)
         add_machine(each)
         add_places(each)
         each.set_defaults(run=run)
@@ -69,9 +72,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _order(args: argparse.Namespace) -> Order:
     name = f"pen {args.way}" if args.machine_order == "pen" else args.machine_order
-    said = {key: getattr(args, key) for key in ("job", "seconds", "x_mm", "y_mm") if hasattr(args, key)}
+    said: dict[str, Any] = {key: getattr(args, key) for key in ("job", "seconds", "x_mm", "y_mm") if hasattr(args, key)}
     try:
-        return Order.model_validate({"order": name, **said})
+        return Order.model_validate({"order": name, "machine": which_of(args), **said})
     except ValueError:
         raise LinedrawError(f"{args.machine_order} of so much is not possible: give a smaller number") from None
 
@@ -81,5 +84,7 @@ def _without_a_daemon(args: argparse.Namespace, order: Order) -> str:
         raise LinedrawError(
             "no daemon runs, and the origin would be forgotten with this command: start linedrawd first"
         )
-    with parts_of(settings_of(args, machine_needed=True), verbose=verbose(args)) as parts:
-        return parts.drawing.obey(machine_order(order))
+    settings = settings_of(args, machine_needed=True, one_machine=True)
+    with parts_of(settings, verbose=verbose(args)) as parts:
+        (drawing,) = parts.drawings.values()
+        return drawing.obey(machine_order(order))

@@ -38,6 +38,16 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
     group.add_argument("-v", "--verbose", action="store_true", default=argparse.SUPPRESS, help="show the log on stderr")
 
 
+def add_which(parser: argparse.ArgumentParser, words: str = "which machine, where several are set") -> None:
+    """The name of a machine's section."""
+    parser.add_argument("--machine", metavar="NAME", default=argparse.SUPPRESS, help=words)
+
+
+def which_of(args: argparse.Namespace) -> str:
+    """The name that was given with `--machine`; "" for none."""
+    return str(getattr(args, "machine", None) or "")
+
+
 def add_record(parser: argparse.ArgumentParser) -> None:
     """Where everything is written down."""
     words = "write every byte to and from the machine, with its time; `linedrawd replay FILE` reads it"
@@ -49,11 +59,15 @@ def record_of(args: argparse.Namespace) -> Path | None:
     return getattr(args, "record", None)
 
 
-def settings_of(args: argparse.Namespace, *, machine_needed: bool = False) -> Settings:
-    """The settings of this command line. Raises SettingsError."""
+def settings_of(args: argparse.Namespace, *, machine_needed: bool = False, one_machine: bool = False) -> Settings:
+    """The settings of this command line. Raises SettingsError.
+
+    one_machine: only those of the machine that is meant; it must be clear which.
+    """
     paths: dict[str, Any] = {name: Path(getattr(args, name)) for name in _PATHS if getattr(args, name, None)}
     said: dict[str, Any] = {name: getattr(args, name, None) for name in ("device", "port", "scanner")}
-    return load_settings(Options(**paths, **said), machine_needed=machine_needed)
+    said["machine"] = which_of(args) or None if one_machine else None
+    return load_settings(Options(**paths, **said), machine_needed=machine_needed, one_machine=one_machine)
 
 
 def verbose(args: argparse.Namespace) -> bool:

@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from daemon.cli.options import add_places, settings_of
+from daemon.cli.options import add_places, add_which, settings_of
 from daemon.errors import LinedrawError
 from daemon.jobs.folder import make_folder
 from daemon.jobs.pool import Pool
@@ -34,13 +34,15 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--explain", action="store_true", help="write explain.json, too: why each edge was kept or refused"
     )
+    add_which(parser)
     add_places(parser)
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """0 when all are planned, 1 when some are not; those are named on stderr."""
-    settings = settings_of(args)
+    settings = settings_of(args, one_machine=True)
+    (machine,) = settings.machines
     if args.explain:
         planning = settings.planning.model_copy(update={"explain": True})
         settings = settings.model_copy(update={"planning": planning})
@@ -50,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
             try:
                 _check_exists(picture)
                 make_folder(folder)
-                pool.plan(picture.absolute(), folder, settings.machine_name, name=str(picture), progress=lambda _: None)
+                pool.plan(picture.absolute(), folder, machine, name=str(picture), progress=lambda _: None)
             except LinedrawError as error:
                 failed += 1
                 named = str(error).startswith(str(picture))

@@ -7,7 +7,8 @@ import os
 
 from daemon.cli.options import record_of, settings_of, verbose
 from daemon.notify import notifier_of
-from daemon.service import Service, parts_of
+from daemon.parts import parts_of
+from daemon.service import Service
 
 
 def run(args: argparse.Namespace) -> int:

@@ -12,6 +12,7 @@ from typing import Any
 
 from daemon.cli.options import add_places, settings_of
 from daemon.errors import LinedrawError
+from daemon.jobs.record import read_record
 from daemon.jobs.states import Reason, State, meaning_of
 from daemon.status import JOB_LOG_NAME
 
@@ -59,24 +60,35 @@ def status(args: argparse.Namespace) -> int:
     runs = bool(said["pid"]) and Path(f"/proc/{said['pid']}").exists()
     if not runs:
         print("no daemon runs; this is its last status:")
-    for key, value in said.items():
-        if value not in ("", None, 0, 0.0) or key == "state":
-            print(f"{key.replace('_', ' '):14} {value}")
-    if said.get("reason") and (remedy := _remedy(str(said["state"]), str(said["reason"]))):
-        print(f"{'what to do':14} {remedy}")
+    machines = said.pop("machines", {})
+    _print_fields(said if len(machines) < 2 else {**said, "state": "", "words": ""})
+    if len(machines) > 1:
+        for name, machine in machines.items():
+            print(f"\n{name}")
+            _print_fields(machine)
     return 0 if runs else 1
 
 
+def _print_fields(said: dict[str, Any]) -> None:
+    for key, value in said.items():
+        if value not in ("", None, 0, 0.0):
+            print(f"{key.replace('_', ' '):14} {value}")
+    if said.get("reason") and (remedy := _remedy(str(said["state"]), str(said["reason"]))):
+        print(f"{'what to do':14} {remedy}")
+
+
 def jobs(args: argparse.Namespace) -> int:
-    root = settings_of(args).paths.jobs
+    settings = settings_of(args)
+    root, several = settings.paths.jobs, len(settings.machines) > 1
     found = (job for folder in (sorted(os.listdir(root)) if root.is_dir() else []) for job in _job(root / folder))
     if args.json:
         print(json.dumps([job | _figures(root / job["id"]) for job in found], indent=1, ensure_ascii=False))
         return 0
     for job in found:
         name = job["name"] if set(job["name"]).isdisjoint(' "=\\') else json.dumps(job["name"], ensure_ascii=False)
+        machine = f"  {job['machine'] or '-':12}" if several else ""
         state = f"{job['state']}, {job['reason']}" if job["reason"] else job["state"]
-        print(f"{job['id']:32} {state:12} {job['changed']}  {name}  {job['words']}")
+        print(f"{job['id']:32} {state:12} {job['changed']}{machine}  {name}  {job['words']}")
     return 0
 
 
@@ -100,8 +112,15 @@ def _job(folder: Path) -> Iterator[dict[str, str]]:
             "remedy": _remedy(last["state"], reason),
             "changed": last["time"],
             "words": last["words"],
+            "machine": _machine_of(folder),
             "folder": str(folder),
         }
+
+
+def _machine_of(folder: Path) -> str:
+    """The one that draws or has drawn it, or that it is for; "" where any may."""
+    record = read_record(folder)
+    return record.machine or record.bound_to if record else ""
 
 
 def _remedy(state: str, reason: str) -> str:

@@ -27,15 +27,37 @@ class Size:
     colour: bool = True
 
 
+def of_machine(said: dict[str, Any], machine: str) -> dict[str, Any]:
+    """What status.json holds, of this one machine; as it stands where it holds no such machine."""
+    return {**said, **(said.get("machines") or {}).get(machine, {})}
+
+
+def shown(said: dict[str, Any]) -> str:
+    """The machine whose drawing is shown where nobody has named one: the first that has a job, or the first."""
+    machines = said.get("machines") or {}
+    return next((name for name, each in machines.items() if each.get("job")), next(iter(machines), ""))
+
+
 def view(
-    said: dict[str, Any], lines: Sequence[Line], messages: Sequence[str], size: Size, *, wall_s: float, runs: bool
+    said: dict[str, Any],
+    lines: Sequence[Line],
+    messages: Sequence[str],
+    size: Size,
+    *,
+    wall_s: float,
+    runs: bool,
+    machine: str = "",
 ) -> list[str]:
     """The rows of the view, each no wider than the terminal and none too many.
 
     said: what status.json holds. lines: the strokes of the job in drawing order, y down. messages: lines of the log.
-    wall_s: seconds since 1970. runs: whether the daemon does.
+    wall_s: seconds since 1970. runs: whether the daemon does. machine: the one whose drawing is shown, and of which
+    the lines are; the others have a row or two each.
     """
-    head = [_machine(said, size, runs=runs), *_job(said, size, wall_s)]
+    others = [of_machine(said, name) | {"machine": name} for name in said.get("machines") or {} if name != machine]
+    said = of_machine(said, machine) | ({"machine": machine} if machine else {})
+    head = [row for other in others for row in _other(other, size, wall_s, runs=runs)]
+    head += [_machine(said, size, runs=runs), *_job(said, size, wall_s)]
     worn = [_styled(str(said["pen"]), RED, size)] if said.get("pen") else []
     foot = [*worn, _styled(_queue(said), "", size), *(_message(line, size) for line in messages[-MESSAGES:])]
     room = size.rows - len(head) - len(foot) - 2
@@ -91,6 +113,15 @@ def _machine(said: dict[str, Any], size: Size, *, runs: bool) -> str:
     state = ", ".join(str(said[key]) for key in ("state", "reason") if said.get(key)) or "?"
     parts = [f"{said.get('machine') or 'no machine'}: {state}", said.get("port"), said.get("firmware")]
     return _styled("   ".join(str(part) for part in parts if part), BOLD, size)
+
+
+def _other(said: dict[str, Any], size: Size, wall_s: float, *, runs: bool) -> list[str]:
+    rows = [_machine(said, size, runs=True)] if runs else []
+    if said.get("job"):
+        rows.append(_styled(f"{said['job']}   {said.get('picture', '')}   {progress_in_words(said, wall_s)}", "", size))
+    elif said.get("words"):
+        rows.append(_styled(str(said["words"]), RED if said.get("held") else "", size))
+    return rows
 
 
 def _job(said: dict[str, Any], size: Size, wall_s: float) -> list[str]:

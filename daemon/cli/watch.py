@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from daemon.cli.options import add_places, settings_of
-from daemon.cli.view import MESSAGES, Size, printable, progress_in_words, view
+from daemon.cli.options import add_places, add_which, settings_of, which_of
+from daemon.cli.view import MESSAGES, Size, of_machine, printable, progress_in_words, shown, view
 from daemon.config import Paths
 from daemon.jobs.pen_life import lines_of
 from daemon.program.svg import LineMm
@@ -41,13 +41,14 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--once", action="store_true", help="show it once and end")
+    add_which(parser, "whose drawing is shown; where none is named, that of one that draws")
     add_places(parser)
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """0, also after Ctrl-C."""
-    sight = Sight(settings_of(args).paths)
+    sight = Sight(settings_of(args).paths, which_of(args))
     if args.once:
         for row in sight.rows(_size_of(sys.stdout), time.time()):
             print(row)
@@ -97,20 +98,30 @@ def _interrupt(*_: Any) -> None:
 
 
 def _tell(sight: Sight, out: TextIO) -> None:
-    told, step, offset = "", (-1, ""), sight.log_bytes()
+    told, steps, offset = "", dict[str, int](), sight.log_bytes()
     while True:
         said = sight.said()
         messages, offset = sight.messages_from(offset)
         for line in messages:
             print(printable(line), file=out, flush=True)
-        words = f"{said.get('state', 'no daemon has left a status')} {said.get('words', '')}".strip()
+        words = _words(said)
         if words != told:
             print(printable(words), file=out, flush=True)
-        now_step = (int((said.get("percent") or 0) // _STEP_PERCENT), str(said.get("job", "")))
-        if now_step != step and said.get("job"):
-            print(printable(f"{said['job']} {progress_in_words(said, time.time())}"), file=out, flush=True)
-        told, step = words, now_step
+        for each in [of_machine(said, name) for name in said.get("machines") or [""]]:
+            job, percent = str(each.get("job", "")), int((each.get("percent") or 0) // _STEP_PERCENT)
+            if job and steps.get(job) != percent:
+                print(printable(f"{job} {progress_in_words(each, time.time())}"), file=out, flush=True)
+                steps = {**steps, job: percent}
+        told = words
         time.sleep(EVERY_S)
+
+
+def _words(said: dict[str, Any]) -> str:
+    """What it does, but for how far it has come."""
+    machines = said.get("machines") or {}
+    if len(machines) > 1:
+        return ", ".join(f"{name}: {each.get('state')} {each.get('words')}".strip() for name, each in machines.items())
+    return f"{said.get('state', 'no daemon has left a status')} {said.get('words', '')}".strip()
 
 
 @dataclass
@@ -118,13 +129,17 @@ class Sight:
     """What the daemon's files tell at this moment. Files that are missing tell nothing."""
 
     paths: Paths
+    machine: str = ""
+    """Whose drawing is shown."""
     _lines: tuple[str, Sequence[LineMm]] = ("", ())
 
     def rows(self, size: Size, wall_s: float) -> list[str]:
         said = self.said()
         pid = said.get("pid")
         runs = bool(pid) and Path(f"/proc/{pid}").exists()
-        return view(said, self._lines_of(str(said.get("job", ""))), self.messages(), size, wall_s=wall_s, runs=runs)
+        name = self.machine or shown(said)
+        lines = self._lines_of(str(of_machine(said, name).get("job", "")))
+        return view(said, lines, self.messages(), size, wall_s=wall_s, runs=runs, machine=name)
 
     def said(self) -> dict[str, Any]:
         try:

@@ -9,15 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
 from daemon.config.explain import explain
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine
 from daemon.config.paths import Paths, paths_of
 from daemon.config.scanner import Scanner
 from daemon.config.section import Section
+from daemon.config.several import check_inboxes, check_ways
 from daemon.config.sheet import Intake, Keep, Planning, Sheet
-from daemon.errors import SettingsError
+from daemon.errors import SettingsError, unknown
 from daemon.places import usual_file
 
 DEFAULT_MACHINE = "plotter"
@@ -37,14 +38,35 @@ class Settings(Section):
 
     @field_validator("machines")
     @classmethod
-    def _one_machine(cls, machines: dict[str, AnyMachine]) -> dict[str, AnyMachine]:
-        if len(machines) != 1:
-            raise ValueError(f"{len(machines)} machines are set, this version drives one: keep one [machines.NAME]")
+    def _told_apart(cls, machines: dict[str, AnyMachine]) -> dict[str, AnyMachine]:
+        if not machines:
+            raise ValueError("no machine is set: write a [machines.NAME] section")
+        check_ways(machines)
         return machines
 
+    @model_validator(mode="after")
+    def _inboxes_and_boxes(self) -> Settings:
+        check_inboxes(self.inboxes)
+        for name in self.machines:
+            self.sheet_of(name)
+        return self
+
     @property
-    def machine_name(self) -> str:
-        return next(iter(self.machines))
+    def inboxes(self) -> dict[str, Path]:
+        """The folders that pictures are dropped into, by the machine that draws what comes there; "": that of all."""
+        own = {name: machine.inbox for name, machine in self.machines.items() if machine.inbox}
+        beside = self.paths.inbox.parent
+        return {"": self.paths.inbox} | {name: beside / Path(inbox).expanduser() for name, inbox in own.items()}
+
+    @property
+    def sharing(self) -> frozenset[str]:
+        """The machines that draw what comes in by the inbox of all: those without their own, or all where all have."""
+        return frozenset(self.machines) - frozenset(self.inboxes) or frozenset(self.machines)
+
+    def sheet_of(self, machine: str) -> Sheet:
+        """The sheet of this machine: as [sheet] says, but for what its own section says."""
+        own = self.machines[machine].model_dump(include={"box_mm", "box_origin_mm", "corner"}, exclude_none=True)
+        return Sheet.model_validate(self.sheet.model_dump() | own) if own else self.sheet
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +81,21 @@ class Options:
     log_dir: Path | None = None
     scanner: str | None = None
     """"sane", "none", or the name of a scanner of SANE's."""
+    machine: str | None = None
+    """The one machine that is meant, where several are set: there is no other one then."""
 
 
 def load_settings(
-    options: Options, *, environment: Mapping[str, str] = os.environ, machine_needed: bool = False
+    options: Options,
+    *,
+    environment: Mapping[str, str] = os.environ,
+    machine_needed: bool = False,
+    one_machine: bool = False,
 ) -> Settings:
     """Everything that is set, checked. Raises SettingsError, which names the file, the section, the key and the cure.
 
     machine_needed: a machine must have been named, by `--device`, `--port` or a `[machines.NAME]` section.
+    one_machine: it must be clear which one is meant.
     """
     file = options.config or usual_file(environment)
     raw = _read_toml(file) if file else {}
@@ -74,11 +103,14 @@ def load_settings(
         raise SettingsError("no machine is set: give --device grbl (or --device sim), or a [machines.NAME] section")
     place = str(file) if file else "settings"
     try:
-        return Settings.model_validate(
+        settings = Settings.model_validate(
             _with_scanner(_with_machine(_with_paths(raw, options, environment), options), options)
         )
     except ValidationError as error:
         raise SettingsError(explain(error, place, Settings.model_fields)) from None
+    if one_machine and len(settings.machines) > 1:
+        raise SettingsError(f"which machine? say --machine and one of {', '.join(settings.machines)}")
+    return settings
 
 
 def _read_toml(file: Path) -> dict[str, Any]:
@@ -108,9 +140,18 @@ def _with_scanner(raw: dict[str, Any], options: Options) -> dict[str, Any]:
 
 def _with_machine(raw: dict[str, Any], options: Options) -> dict[str, Any]:
     machines = raw.get("machines") or {DEFAULT_MACHINE: {}}
-    said = _said_of_machine(options)
-    if not isinstance(machines, dict) or not said:
+    if not isinstance(machines, dict):
         return raw | {"machines": machines}
+    if options.machine is not None:
+        if options.machine not in machines:
+            raise SettingsError(unknown(f"the machine {options.machine}", options.machine, list(machines)))
+        machines = {options.machine: machines[options.machine]}
+    said = _said_of_machine(options)
+    if said and len(machines) > 1:
+        raise SettingsError(
+            f"--device and --port tell of one machine, {len(machines)} are set ({', '.join(machines)}): "
+            "say it in their sections"
+        )
     return raw | {"machines": {name: _merged(machine, said) for name, machine in machines.items()}}
 
 

@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from daemon.config.pen import PenSettings, ZPenSettings
 from daemon.config.section import PairMm, Positive, Section
+from daemon.config.sheet import Corner
 from daemon.errors import SettingsError
 
 SIMULATED_GRBL = "sim://grbl"
@@ -28,6 +29,8 @@ _WAYS = {
     ),
 }
 """How the url of each device may begin, and how that is said."""
+_NOT_OF_PROGRAMS = {"url", "may_reset_usb", "pen_life_m", "sheet", "inbox"}
+"""Two machines that differ in these alone draw each other's programs."""
 
 
 class Machine(Section):
@@ -61,6 +64,15 @@ class Machine(Section):
     """So far X and Y run before the pen follows, whenever they turn round."""
     sheet: Literal["ask", "feed", "auto"] = "auto"
     """"ask": wait for a person after each drawing; "feed": draw on; "auto": feed on a simulated machine, else ask."""
+    inbox: Annotated[str, Field(pattern=r"^[^\x00]{0,255}$")] = ""
+    """A folder of its own: what is dropped there is drawn by this machine, and nothing else. Beside the inbox, or with
+    its whole path; "": the inbox of all."""
+    box_mm: tuple[Positive, Positive] | None = None
+    """Where its sheets are of another size: in place of box_mm in [sheet]."""
+    box_origin_mm: PairMm | None = None
+    """In place of box_origin_mm in [sheet]."""
+    corner: Corner | None = None
+    """In place of corner in [sheet]."""
 
     @model_validator(mode="after")
     def _way_to_this_device(self) -> Machine:
@@ -78,6 +90,10 @@ class Machine(Section):
 
     def check_streamable(self) -> None:
         """Raises SettingsError when nothing can be sent to it by these settings, though programs can be written."""
+
+    def draws_like(self, other: Machine) -> bool:
+        """A program for the other one is one for this machine, too."""
+        return self.model_dump(exclude=_NOT_OF_PROGRAMS) == other.model_dump(exclude=_NOT_OF_PROGRAMS)
 
     @property
     def simulated(self) -> bool:

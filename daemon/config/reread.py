@@ -15,6 +15,9 @@ AT_ONCE: Mapping[str, str] = {
     "planning.explain": "the next picture that is planned",
     "machines.*.draw_mm_s": "the next picture that is planned",
     "machines.*.resolution_mm": "the next picture that is planned",
+    "machines.*.box_mm": "the next picture that is planned",
+    "machines.*.box_origin_mm": "the next picture that is planned",
+    "machines.*.corner": "the next picture that is planned",
     "machines.*.scale_*": "the next picture that is planned",
     "machines.*.skew_deg": "the next picture that is planned",
     "machines.*.backlash_mm": "the next picture that is planned",
@@ -30,8 +33,8 @@ process was made with it."""
 
 def reread(now: Settings, new: Settings) -> tuple[Settings, list[str]]:
     """What holds from now on, and a sentence for each key that has changed."""
-    if _machine(now) != _machine(new):
-        return now, ["machines has changed to another machine: restart linedrawd"]
+    if _devices(now) != _devices(new):
+        return now, ["machines has changed to other machines: restart linedrawd"]
     old, wanted = dict(_leaves(now.model_dump())), dict(_leaves(new.model_dump()))
     changed = [key for key in sorted(old | wanted) if old.get(key) != wanted.get(key)]
     taken = {key: wanted[key] for key in changed if key in wanted and since(key)}
@@ -43,9 +46,8 @@ def since(key: str) -> str:
     return next((words for pattern, words in AT_ONCE.items() if fnmatchcase(key, pattern)), "")
 
 
-def _machine(settings: Settings) -> tuple[str, str]:
-    name = settings.machine_name
-    return name, settings.machines[name].device
+def _devices(settings: Settings) -> dict[str, str]:
+    return {name: machine.device for name, machine in settings.machines.items()}
 
 
 def _words(key: str, value: object) -> str:

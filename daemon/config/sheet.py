@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
 from daemon.config.section import PairMm, Positive, Section
+
+Corner: TypeAlias = Literal["lower left", "lower right", "upper left", "upper right"]
 
 
 class Intake(Section):
@@ -63,7 +65,7 @@ class Sheet(Section):
     """Width and height of the box that a drawing is fitted into."""
     box_origin_mm: PairMm = (25.0, 25.0)
     """The box's corner that is nearest to the origin."""
-    corner: Literal["lower left", "lower right", "upper left", "upper right"] = "lower left"
+    corner: Corner = "lower left"
     """The sheet's corner where the origin lies; x still runs to the right and y up."""
     size: Literal["auto", "fit", "true"] = "auto"
     """"fit": as large as the box; "true": as large as the picture's resolution says, in the middle of the box; "auto":

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from daemon.config import Settings
 from daemon.errors import DiskTrouble, SettingsError
 from daemon.intake.inbox import readable
 from daemon.intake.side import Wishes, parse, read_bytes
+from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import source_of
 from daemon.jobs.record import read_record
 from daemon.jobs.states import State
-from daemon.jobs.wishes import SIDE_NAME, with_wishes
+from daemon.jobs.wishes import SIDE_NAME, machines_for, with_wishes
 
-ARRIVAL_NAME = "arrival.json"
-"""In a job's folder: what its picture was called, how many copies are drawn, and of which job it is one."""
 _NOT_DRAWN = (State.FAILED, State.CANCELLED, State.INTERRUPTED)
 
 
@@ -40,40 +37,44 @@ class Arrivals:
         self._jobs_of: dict[int, list[str]] | None = None
         self._hashes: dict[str, str] = {}
 
-    def take(self, picture: Path, beside: Path | None) -> None:
+    def take(self, picture: Path, beside: Path | None, *, inbox: str = "") -> None:
         """Make jobs of a picture and its side file, which then lie there no longer.
 
-        Raises SettingsError for a side file that is wrong, DiskTrouble, or FileNotFoundError; they then still do.
+        inbox: the machine whose inbox they lie in; "" for that of all. Raises SettingsError for a side file that is
+        wrong, DiskTrouble, or FileNotFoundError; they then still do.
         """
         self._check_room()
         name = readable(picture.name)
-        said, wishes = self._wishes(beside)
+        said, wishes = self._wishes(beside, inbox)
         twin = self._twin(picture, said) if self.settings.intake.duplicates == "skip" else ""
         copies = 1 if twin else wishes.copies
-        files = {ARRIVAL_NAME: _arrival(name, beside.name if beside else "", copies)}
+        arrival = Arrival(name, beside.name if beside else "", copies, inbox=inbox, machine=wishes.machine or inbox)
+        files = {ARRIVAL_NAME: arrival.encoded()}
         if beside:
             files[SIDE_NAME] = said
         job = self._desk.folders.take(picture, files)
-        self._add([job], name, copies, beside)
+        self._add([job], arrival, beside)
         if twin:
             words = f"the same picture as job {twin} (duplicates = 'skip'): `linedrawd again {twin}` draws it anew"
             self._desk.step(job, State.CANCELLED, words)
 
-    def recover(self, inbox: Path) -> None:
+    def recover(self, inboxes: Mapping[str, Path]) -> None:
         """After a start, before the desk: make the jobs whose pictures had come in but were not recorded.
 
-        Where the journal is lost, the folders of the others have a record each, and the desk takes them over.
+        inboxes: the folders, by the machine whose they are, "" for that of all. Where the journal is lost, the folders
+        of the others have a record each, and the desk takes them over.
         """
         folders = self._desk.folders
-        folders.finish_claims(inbox)
+        for inbox in inboxes.values():
+            folders.finish_claims(inbox)
         for job in folders.strays({job.id for job in self._desk.journal.jobs()}):
             folder = folders.path(job)
-            arrival = _arrived(folder / ARRIVAL_NAME) if read_record(folder) is None else None
+            arrival = arrival_in(folder) if read_record(folder) is None else None
             if arrival is not None and self._desk.journal.job(job) is None:
-                beside = inbox / arrival["side"] if arrival["side"] else None
-                made = [job, *(_copies_of(folders.root, job) if arrival["copies"] > 1 else [])]
+                inbox = inboxes.get(arrival.inbox, inboxes[""])
+                made = [job, *(_copies_of(folders.root, job) if arrival.copies > 1 else [])]
                 recorded = {each for each in made if self._desk.journal.job(each)}
-                self._add(made, arrival["name"], arrival["copies"], beside, recorded=recorded)
+                self._add(made, arrival, inbox / arrival.side if arrival.side else None, recorded=recorded)
 
     def _check_room(self) -> None:
         floor_mb, root = self.settings.keep.free_mb, self._desk.folders.root
@@ -84,7 +85,7 @@ class Arrivals:
                 "free the disk or lower free_mb"
             )
 
-    def _wishes(self, beside: Path | None) -> tuple[bytes, Wishes]:
+    def _wishes(self, beside: Path | None, inbox: str) -> tuple[bytes, Wishes]:
         if beside is None:
             return b"", Wishes()
         place = readable(beside.name)
@@ -95,12 +96,15 @@ class Arrivals:
         except OSError as error:
             raise SettingsError(f"{place} cannot be read ({error.strerror}): put a file there that can") from None
         wishes = parse(said, place)
-        with_wishes(self.settings, wishes, place)
+        if inbox and wishes.machine not in ("", inbox):
+            raise SettingsError(
+                f"{place}: machine = '{wishes.machine}', but this is the inbox of {inbox}: leave it out"
+            )
+        for machine in [inbox] if inbox else machines_for(self.settings, wishes, place):
+            with_wishes(self.settings, wishes, machine, place)
         return said, wishes
 
-    def _add(
-        self, made: list[str], name: str, copies: int, beside: Path | None, *, recorded: Iterable[str] = ()
-    ) -> None:
+    def _add(self, made: list[str], arrival: Arrival, beside: Path | None, *, recorded: Iterable[str] = ()) -> None:
         """The copies' folders first: a job that is recorded has them all. Then the side file, then the record.
 
         made: the job whose folder holds the picture, and those of its copies that are there already.
@@ -109,17 +113,18 @@ class Arrivals:
         folder = folders.path(job)
         source = source_of(folder)
         assert source is not None
-        while len(made) < copies:
-            files = {ARRIVAL_NAME: _arrival(name, "", 1, of=job)}
+        while len(made) < arrival.copies:
+            copy = Arrival(arrival.name, "", 1, copy_of=job, machine=arrival.machine)
+            files = {ARRIVAL_NAME: copy.encoded()}
             if (folder / SIDE_NAME).exists():
                 files[SIDE_NAME] = (folder / SIDE_NAME).read_bytes()
-            made.append(folders.copy(source, files, name=name))
+            made.append(folders.copy(source, files, name=arrival.name))
         if beside is not None:
             _remove_taken(beside, folder / SIDE_NAME)
         # Not before all of them have their folders: what is recorded is not looked at again after a cut.
         for each in made:
             if each not in recorded:
-                self._desk.add(each, name)
+                self._desk.add(each, arrival.name, bound_to=arrival.machine)
         self._remember(made)
 
     def _twin(self, picture: Path, said: bytes) -> str:
@@ -155,22 +160,9 @@ class Arrivals:
         return self._hashes[job_id]
 
 
-def _arrival(name: str, side: str, copies: int, *, of: str = "") -> bytes:
-    return json.dumps({"name": name, "side": side, "copies": copies, "copy_of": of}).encode()
-
-
 def _copies_of(root: Path, job: str) -> list[str]:
-    arrived = {path.parent.name: _arrived(path) for path in sorted(root.glob(f"*/{ARRIVAL_NAME}"))}
-    return [copy for copy, arrival in arrived.items() if arrival is not None and arrival["copy_of"] == job]
-
-
-def _arrived(path: Path) -> dict[str, Any] | None:
-    """None where a folder has none, or one that we have not written."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) and found.keys() == {"name", "side", "copies", "copy_of"} else None
+    arrived = {path.parent.name: arrival_in(path.parent) for path in sorted(root.glob(f"*/{ARRIVAL_NAME}"))}
+    return [copy for copy, arrival in arrived.items() if arrival is not None and arrival.copy_of == job]
 
 
 def _remove_taken(beside: Path, taken: Path) -> None:

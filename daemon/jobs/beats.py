@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from daemon.jobs.pool import Pool
-from daemon.pulse import Pulse
+from daemon.pulse import Heart
 from firmware_protocol.session import Event, Sent
 
 LINK_WITHIN_S = 60.0
@@ -16,8 +16,8 @@ LINK_WITHIN_S = 60.0
 class Beats:
     """turned: for each turn of the link. hearing: for what is heard. measuring: for the worker that measures ink."""
 
-    def __init__(self, pulse: Pulse) -> None:
-        self._heart = pulse.drawing
+    def __init__(self, heart: Heart) -> None:
+        self._heart = heart
 
     def turned(self) -> None:
         self._heart.within(LINK_WITHIN_S)

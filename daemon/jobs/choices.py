@@ -1,4 +1,4 @@
-"""What only a person may choose: to try a job again, to draw it once more, to go on with it from a stroke, to drain."""
+"""What only a person may choose of a job: to try it again, to draw it once more, to go on with it from a stroke."""
 
 from __future__ import annotations
 
@@ -18,17 +18,16 @@ NOT_PLACED = (
     "the machine does not know where the sheet's origin is: put the pen there and say `linedrawd machine origin`, or "
     "`linedrawd machine home`, then `linedrawd resume JOB --from-stroke K` again"
 )
-_DRAINED = "a person said drain: nothing more is begun"
 
 
 class Choices:
     """The orders return a sentence for the person who gave them. Calls come from any thread.
 
-    placed: whether the machine knows where the sheet's origin is. Each raises LinedrawError when it is refused, and
+    placed: whether this machine knows where the sheet's origin is. Each raises LinedrawError when it is refused, and
     DiskTrouble, with nothing changed.
     """
 
-    def __init__(self, desk: Desk, *, placed: Callable[[], bool]) -> None:
+    def __init__(self, desk: Desk, *, placed: Callable[[str], bool]) -> None:
         self._desk, self._placed = desk, placed
 
     def retry(self, job_id: str) -> str:
@@ -50,12 +49,7 @@ class Choices:
             raise LinedrawError(f"the picture of job {job.id} is no longer kept: drop it into the inbox again")
         side = folder / SIDE_NAME
         new = self._desk.folders.copy(source, {SIDE_NAME: side.read_bytes()} if side.exists() else None, name=job.name)
-        return f"job {self._desk.add(new, job.name)} draws {job.name} once more"
-
-    def drain(self) -> str:
-        """What is being drawn is finished, and nothing more is begun."""
-        self._desk.hold(_DRAINED)
-        return "what is being drawn is finished, no further job starts until you say `linedrawd go`"
+        return f"job {self._desk.add(new, job.name, bound_to=job.bound_to)} draws {job.name} once more"
 
     def resume_from(self, job_id: str, stroke: int) -> str:
         """Go on with an interrupted job from this stroke (from 0) on; the person answers for those before it."""
@@ -66,11 +60,16 @@ class Choices:
             raise LinedrawError(
                 f"job {job.id} has {job.strokes} strokes, from 0 to {job.strokes - 1}: give one of them"
             )
-        if not self._placed():
+        station = self._desk.station(job.machine)
+        if station is None:
+            raise LinedrawError(
+                f"job {job.id} was drawn by {job.machine or '?'}, which is not set any more: say `again`"
+            )
+        if not self._placed(station.name):
             raise LinedrawError(NOT_PLACED)
         write_durably(self._desk.folders.path(job.id) / _FROM_NAME, str(stroke).encode())
         self._desk.step(job.id, State.WAITING, f"a person has it go on from stroke {stroke}")
-        self._desk.go()
+        station.go()
         return f"job {job.id} goes on from stroke {stroke}"
 
 

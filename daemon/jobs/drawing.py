@@ -9,7 +9,6 @@ from pathlib import Path
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.choices import NOT_PLACED, program_left
-from daemon.jobs.desk import Desk
 from daemon.jobs.journal import Job
 from daemon.jobs.kept_ink import add_to_report, keep_ink
 from daemon.jobs.moves import Moves, homing
@@ -20,6 +19,7 @@ from daemon.jobs.promise import Ahead
 from daemon.jobs.retry import IDLE_S, retry_after_s
 from daemon.jobs.standing import forget_place, stand
 from daemon.jobs.states import HOW_ON, OUTCOMES, Reason, State, outcome_of
+from daemon.jobs.station import Station
 from daemon.shapes import Program
 from firmware_protocol.session import Accepted, Ended, Event, Paused, Resumed, Verdict, Waiting
 
@@ -38,7 +38,7 @@ class Drawing:
 
     def __init__(
         self,
-        desk: Desk,
+        station: Station,
         *,
         opened: Open,
         load: Callable[[Path], Program],
@@ -49,8 +49,9 @@ class Drawing:
         now: Callable[[], float] = time.monotonic,
     ) -> None:
         """inked: told the folder of a job that is over and how many of its strokes are on paper."""
-        self._desk, self._opened, self._load, self._measure, self._now = desk, opened, load, measure, now
-        self._moves, self._places, self._asked, self._inked = moves, places, Asked(desk.wake), inked
+        self.station, self._desk, self._opened, self._load, self._measure = station, station.desk, opened, load, measure
+        self._moves, self._places, self._asked, self._inked = moves, places, Asked(self._desk.wake), inked
+        self._now = now
         self._machine: OpenMachine | None = None
         self._placed = False
         self._progress: Progress | None = None
@@ -69,13 +70,13 @@ class Drawing:
         """Returns the seconds to wait for a change before the next turn."""
         if self._asked.obey_next(self.obey):
             return 0.0
-        if self._desk.cut_off and not self._machine and self._now() >= self._retry_at_s:
+        if self.station.cut_off and not self._machine and self._now() >= self._retry_at_s:
             self._lift_what_was_cut_off()
-        if self._machine is None and not self._desk.held and self._now() >= self._retry_at_s:
+        if self._machine is None and not self.station.held and self._now() >= self._retry_at_s:
             self._connect()
         if self._machine is None:
             return self._without_a_machine()
-        job = None if self._rests() else self._desk.begin_drawing()
+        job = None if self._rests() else self.station.begin_drawing()
         if job is None:
             self._listen()
             return IDLE_S
@@ -115,7 +116,7 @@ class Drawing:
         machine, self._machine = self._machine, None
         if machine:
             machine.close()
-            forget_place(self._desk, "the machine's port was closed")
+            forget_place(self._desk, "the machine's port was closed", self.station)
 
     def _connect(self) -> None:
         try:
@@ -127,9 +128,10 @@ class Drawing:
         self._machine, self._placed = self._opened(self._hear, still), False
         ready = self._machine.connect()
         self.missing, self._told = None, ""
-        self._desk.say("the machine is ready", port=self._machine.name, firmware=ready.firmware)
-        state = "held" if self._desk.held else "idle"
-        self._desk.show(state=state, port=self._machine.name, firmware=ready.firmware)
+        self.station.lost(missing=False)
+        self.station.say("the machine is ready", port=self._machine.name, firmware=ready.firmware)
+        state = "held" if self.station.held else "idle"
+        self.station.show(state=state, port=self._machine.name, firmware=ready.firmware)
 
     def obey(self, order: MachineOrder) -> str:
         """Do it in this thread, which draws. Raises LinedrawError when it cannot be done."""
@@ -149,7 +151,7 @@ class Drawing:
             raise
         if closed and still:
             self._give_back()
-        self._desk.say(words.partition("\n")[0], order=order.name)
+        self.station.say(words.partition("\n")[0], order=order.name)
         return words
 
     def _lift_what_was_cut_off(self) -> None:
@@ -162,25 +164,26 @@ class Drawing:
             self._lost(error)
             return
         except MachineFault as error:
-            self._desk.trouble(f"the pen may still be down, it could not be lifted: {error}")
+            self.station.trouble(f"the pen may still be down, it could not be lifted: {error}")
         else:
             words = "the pen has been lifted" if lifted else "the pen may still be down: lift it by hand"
-            self._desk.say(f"the last drawing was cut off: {words}, and nothing else moves", level=logging.WARNING)
-        self._desk.cut_off = False
+            self.station.say(f"the last drawing was cut off: {words}, and nothing else moves", level=logging.WARNING)
+        self.station.cut_off = False
         self._give_back()
 
     def _lost(self, error: NoMachine | MachineFault) -> None:
         self._give_back()
         self.missing = error
+        self.station.lost(missing=True)
         self._retry_at_s = self._now() + retry_after_s(error)
         if str(error) != self._told:
             self._told = str(error)
-            self._desk.trouble(self._told)
+            self.station.trouble(self._told)
 
     def _without_a_machine(self) -> float:
-        if self._desk.held:
+        if self.station.held:
             return IDLE_S
-        self._desk.let_wait(self._told)
+        self.station.let_wait(self._told)
         return max(0.0, self._retry_at_s - self._now())
 
     def _rests(self) -> bool:
@@ -188,8 +191,10 @@ class Drawing:
         assert self._machine is not None
         why = self._machine.rests
         if why:
-            self._desk.let_wait(why)
-            forget_place(self._desk, "the motors were switched off")
+            self.station.let_wait(why)
+            forget_place(self._desk, "the motors were switched off", self.station)
+        if bool(why) != self.station.missing:
+            self.station.lost(missing=bool(why))
         return bool(why)
 
     def _listen(self) -> None:
@@ -210,13 +215,13 @@ class Drawing:
             self._desk.step_at_last(job.id, State.FAILED, str(error))
             return
         if job.possible and not self.placed:
-            self._desk.hold(NOT_PLACED)
+            self.station.hold(NOT_PLACED)
             self._desk.step_at_last(job.id, State.INTERRUPTED, NOT_PLACED, reason=Reason.POSITION_UNKNOWN)
             return
         times_s = self._machine.line_times_s(program)
         self._drawn = job.id
-        self._progress = Progress(self._desk.show, program, times_s, now=self._machine.now)
-        self._desk.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
+        self._progress = Progress(self.station.show, program, times_s, now=self._machine.now)
+        self.station.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
         self._asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
         ended = self._ended(job, program, Ahead(self._promises(job, program), program, times_s))
@@ -224,7 +229,7 @@ class Drawing:
         self._asked.accept()
         self._placed = ended.position_known and (self._placed or ended.strokes_possible > job.possible)
         self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
-        self._desk.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
+        self.station.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
 
     def _promises(self, job: Job, program: Program) -> Callable[[int, int], None]:
         def write(certain: int, possible: int) -> None:
@@ -234,7 +239,7 @@ class Drawing:
 
     def _ended(self, job: Job, program: Program, promise: Ahead) -> Ended:
         assert self._machine is not None
-        if self._desk.held or self._desk.ending or self._desk.is_cancelled(job.id):
+        if self.station.held or self._desk.ending or self._desk.is_cancelled(job.id):
             why = "a person stopped it before it began"
             return Ended(Verdict.STOPPED, job.certain, job.possible, True, True, why)
         try:
@@ -257,7 +262,7 @@ class Drawing:
             cancelled=cancelled,
             position_known=known and not self._desk.ending,
         )
-        if not self._desk.held:
+        if not self.station.held:
             self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=state in (State.CANCELLED, State.DONE))
         extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)
         if state is State.INTERRUPTED:
@@ -266,13 +271,13 @@ class Drawing:
 
     def _go_on_or_hold(self, why: str, *, on: bool) -> None:
         if on:
-            self._desk.show(state="idle", words="")
+            self.station.show(state="idle", words="")
         else:
-            self._desk.hold(why)
+            self.station.hold(why)
 
     def _give_back(self) -> None:
         self.close()
-        self._desk.show(port="", firmware="")
+        self.station.show(port="", firmware="")
 
     def _report(self, job: Job, ink: InkMm | None, real_s: float) -> None:
         """The seconds into report.json, the ink beside it, and have it measured. A job does not fail for its report."""
@@ -290,6 +295,6 @@ class Drawing:
         if self._progress:
             self._progress.hear(event)
         if isinstance(event, Paused | Resumed) or (isinstance(event, Waiting) and event.cause):
-            stand(event, self._drawn, self._desk, self._desk.show)
+            stand(event, self._drawn, self._desk, self.station.show)
         elif not isinstance(event, Accepted):
-            tell(event, say=self._desk.say, show=self._desk.show)
+            tell(event, say=self.station.say, show=self.station.show)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from daemon.durable import sync_folder
 from daemon.errors import DiskTrouble
+from daemon.jobs.kept import GO, HELD, SHEET, KeptOfMachines
 from daemon.jobs.states import UNDER_THE_PEN, Reason, State, check_step, ink_in_words, meaning_of
 
 VERSION = 3
@@ -20,7 +21,7 @@ SCHEMA = (
     """
 CREATE TABLE IF NOT EXISTS events (
     number INTEGER PRIMARY KEY, at_s REAL NOT NULL, job TEXT NOT NULL, state TEXT NOT NULL, words TEXT NOT NULL,
-    reason TEXT NOT NULL DEFAULT ''
+    machine TEXT NOT NULL DEFAULT '', reason TEXT NOT NULL DEFAULT ''
 )
 """,
     """
@@ -29,12 +30,11 @@ CREATE TABLE IF NOT EXISTS ink (
 )
 """,
 )
-"""events only grows. ink has one row for each job that may have touched a sheet: how far its pen may have come."""
+"""events only grows; machine: the one that a row is about, "" where it is about none. ink has one row for each job
+that may have touched a sheet: how far its pen may have come."""
 
 UNTOLD = 2**31 - 1
 """Stands for strokes that may be drawn where nobody has written down how many."""
-_SHEET, _HELD, _GO = "new sheet", "held", "go"
-"""Stand in the place of a state in the rows that belong to no job."""
 _DAMAGED = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
@@ -43,7 +43,8 @@ class Job:
     """What the journal knows of one job: its last step and the words that were said with it.
 
     The first `certain` of its `strokes` are certainly drawn, and none from number `possible` on has been touched; all
-    are 0 while no ink can be on the sheet.
+    are 0 while no ink can be on the sheet. machine: it is planned for this one, or was begun on it. bound_to: the one
+    machine that may draw it, because a person said so; "" where any may.
     """
 
     id: str
@@ -54,6 +55,8 @@ class Job:
     strokes: int = 0
     certain: int = 0
     possible: int = 0
+    machine: str = ""
+    bound_to: str = ""
     reason: Reason = Reason.NONE
 
     @property
@@ -72,8 +75,8 @@ class Journal:
     """Append-only, SQLite with WAL and synchronous=FULL: a step that was recorded survives a power cut.
 
     Every method may be called from any thread and raises DiskTrouble where the file cannot be read or written; the
-    step has then not happened. `sheet_used` is true from the first drawing after a new sheet came in; `held` says why
-    no job may start, and is empty when they may. Times are for people: the order is that of the rows.
+    step has then not happened. `kept` is what is remembered of each machine. Times are for people: the order is that
+    of the rows.
     """
 
     def __init__(self, path: Path, *, now: Callable[[], float] = time.time) -> None:
@@ -81,9 +84,7 @@ class Journal:
         self._path, self._now, self._lock = path, now, threading.RLock()
         self._jobs: dict[str, Job] = {}
         self._counts: Counter[State] = Counter()
-        self.sheet_used, self.held = False, ""
-        self._sheet_before = False
-        """Whether the sheet was used when the present drawing began."""
+        self.kept = KeptOfMachines()
         try:
             self._rows = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
             try:
@@ -117,11 +118,11 @@ class Journal:
             for table in SCHEMA:
                 self._rows.execute(table)
             if 0 < version < 3:
-                self._rows.execute("ALTER TABLE events ADD COLUMN reason TEXT NOT NULL DEFAULT ''")
-                self._rows.execute(
-                    "UPDATE events SET reason = ? WHERE state = ?",
-                    (Reason.POSITION_UNKNOWN.value, State.INTERRUPTED.value),
-                )
+                # There was one machine then, "" stands for it, and nobody has written down why a job was interrupted.
+                for column in ("machine", "reason"):
+                    self._rows.execute(f"ALTER TABLE events ADD COLUMN {column} TEXT NOT NULL DEFAULT ''")
+                because = Reason.POSITION_UNKNOWN.value, State.INTERRUPTED.value
+                self._rows.execute("UPDATE events SET reason = ? WHERE state = ?", because)
             if version == 1:
                 # It did not write down how far a drawing came, so that every stroke of one that was begun is possible.
                 self._rows.execute(
@@ -131,12 +132,13 @@ class Journal:
             self._rows.execute(f"PRAGMA user_version={VERSION}")
 
     def _read(self) -> None:
-        rows = self._rows.execute("SELECT at_s, job, state, words, reason FROM events ORDER BY number").fetchall()
-        for at_s, job, state, words, reason in rows:
+        columns = "at_s, job, state, words, machine, reason"
+        rows = self._rows.execute(f"SELECT {columns} FROM events ORDER BY number").fetchall()
+        for at_s, job, state, words, machine, reason in rows:
             if job:
-                self._remember(at_s, job, state, words, Reason(reason))
+                self._remember(at_s, job, state, words, machine, Reason(reason))
             else:
-                self._note(state, words)
+                self.kept.note(machine, state, words)
         for job, *extent in self._rows.execute("SELECT job, strokes, certain, possible FROM ink").fetchall():
             self._know(job, *extent)
 
@@ -154,27 +156,32 @@ class Journal:
         with self._lock:
             return self._jobs.get(job_id)
 
-    def add(self, job_id: str, name: str) -> Job:
-        """A new job, queued. `name` is what the person called the picture."""
+    def add(self, job_id: str, name: str, *, bound_to: str = "") -> Job:
+        """A new job, queued. `name` is what the person called the picture. bound_to: the machine that shall draw it."""
         with self._lock:
             if job_id in self._jobs:
                 raise ValueError(f"job {job_id} is there already")
-            return self._append(job_id, State.QUEUED.value, name)
+            return self._append(job_id, State.QUEUED.value, name, bound_to)
 
     def adopt(self, job: Job) -> None:
         """Take over a job as its folder tells it, after a journal was lost."""
         with self._lock, self._together():
             self._insert_ink(job.id, job.strokes, job.certain, job.possible)
-            self._insert(job.id, State.QUEUED.value, job.name)
-            self._insert(job.id, job.state.value, job.words, job.reason)
+            self._insert(job.id, State.QUEUED.value, job.name, job.bound_to)
+            self._insert(job.id, job.state.value, job.words, job.machine, job.reason)
         self._put(job)
 
-    def step(self, job_id: str, state: State, words: str = "", *, reason: Reason = Reason.NONE) -> Job:
-        """The job goes on to `state`. Raises ValueError when the tables lack that step, or the state that reason."""
+    def step(
+        self, job_id: str, state: State, words: str = "", *, reason: Reason = Reason.NONE, machine: str = ""
+    ) -> Job:
+        """The job goes on to `state`, for or on this machine where one is named.
+
+        Raises ValueError when the tables lack that step, or the state that reason.
+        """
         with self._lock:
             check_step(self._jobs[job_id].state, state)
             meaning_of(state, reason)
-            return self._append(job_id, state.value, words, reason)
+            return self._append(job_id, state.value, words, machine, reason)
 
     def promise(self, job_id: str, *, strokes: int, certain: int, possible: int) -> None:
         """Before a byte of them is sent: the strokes before number `possible` may come onto the sheet.
@@ -198,37 +205,40 @@ class Journal:
             extent = before.strokes, certain, possible
             with self._together():
                 self._insert_ink(job_id, *extent)
-                at_s = self._insert(job_id, state.value, words, reason)
-            self._remember(at_s, job_id, state.value, words, reason)
+                at_s = self._insert(job_id, state.value, words, reason=reason)
+            self._remember(at_s, job_id, state.value, words, "", reason)
             return self._know(job_id, *extent)
 
-    def new_sheet(self) -> None:
+    def new_sheet(self, machine: str) -> None:
         """A person has put a new sheet in."""
-        with self._lock:
-            self._insert("", _SHEET, "")
-            self._note(_SHEET, "")
+        self._note(machine, SHEET)
 
-    def hold(self, words: str) -> None:
-        """No job may start, also after a restart. Holds for this daemon even when DiskTrouble is raised."""
+    def hold(self, machine: str, words: str) -> None:
+        """It begins no job, also after a restart. Holds for this daemon even when DiskTrouble is raised."""
         with self._lock:
-            self.held = words
-            self._insert("", _HELD, words)
+            self.kept.note(machine, HELD, words)
+            self._insert("", HELD, words, machine)
 
-    def go(self) -> None:
+    def go(self, machine: str) -> None:
+        self._note(machine, GO)
+
+    def _note(self, machine: str, what: str) -> None:
         with self._lock:
-            self._insert("", _GO, "")
-            self._note(_GO, "")
+            self._insert("", what, "", machine)
+            self.kept.note(machine, what, "")
 
     def close(self) -> None:
         with self._lock:
             self._rows.close()
 
-    def _append(self, job_id: str, state: str, words: str, reason: Reason = Reason.NONE) -> Job:
-        return self._remember(self._insert(job_id, state, words, reason), job_id, state, words, reason)
+    def _append(self, job_id: str, state: str, words: str, machine: str, reason: Reason = Reason.NONE) -> Job:
+        at_s = self._insert(job_id, state, words, machine, reason)
+        return self._remember(at_s, job_id, state, words, machine, reason)
 
-    def _insert(self, job_id: str, state: str, words: str, reason: Reason = Reason.NONE) -> float:
-        values = (self._now(), job_id, state, words, reason.value)
-        self._write("INSERT INTO events (at_s, job, state, words, reason) VALUES (?, ?, ?, ?, ?)", values)
+    def _insert(self, job_id: str, state: str, words: str, machine: str = "", reason: Reason = Reason.NONE) -> float:
+        values = (self._now(), job_id, state, words, machine, reason.value)
+        insert = "INSERT INTO events (at_s, job, state, words, machine, reason) VALUES (?, ?, ?, ?, ?, ?)"
+        self._write(insert, values)
         return values[0]
 
     def _insert_ink(self, job_id: str, strokes: int, certain: int, possible: int) -> None:
@@ -252,14 +262,17 @@ class Journal:
         except sqlite3.Error as error:
             raise DiskTrouble(f"the journal {self._path} cannot be written ({error}): {_remedy(error)}") from None
 
-    def _remember(self, at_s: float, job_id: str, state: str, words: str, reason: Reason) -> Job:
-        before = self._jobs.get(job_id, Job(job_id, words, State.QUEUED, "", at_s))
-        said = "" if job_id not in self._jobs else words
+    def _remember(self, at_s: float, job_id: str, state: str, words: str, machine: str, reason: Reason) -> Job:
+        before = self._jobs.get(job_id)
+        if before is None:
+            return self._put(Job(job_id, words, State(state), "", at_s, bound_to=machine))
+        machine = machine or before.machine
         if state == State.DRAWING.value and before.state is not State.PAUSED:
-            self._sheet_before, self.sheet_used = self.sheet_used, True
+            self.kept.began(machine)
         elif before.state in UNDER_THE_PEN and state == State.PLANNED.value:
-            self.sheet_used = self._sheet_before
-        return self._put(replace(before, state=State(state), words=said, changed_s=at_s, reason=reason))
+            self.kept.undone(machine)
+        after = replace(before, state=State(state), words=words, changed_s=at_s, machine=machine, reason=reason)
+        return self._put(after)
 
     def _put(self, job: Job) -> Job:
         if job.id in self._jobs:
@@ -272,12 +285,6 @@ class Journal:
         known = replace(self._jobs[job_id], strokes=strokes, certain=certain, possible=possible)
         self._jobs[job_id] = known
         return known
-
-    def _note(self, what: str, words: str) -> None:
-        if what == _SHEET:
-            self.sheet_used = False
-        else:
-            self.held = words if what == _HELD else ""
 
 
 def _back_up(rows: sqlite3.Connection, copy: Path) -> None:

@@ -22,9 +22,16 @@ class PenLife:
     """
 
     def __init__(
-        self, path: Path, life_m: float | None, *, say: Callable[..., None], show: Callable[..., None]
+        self,
+        path: Path,
+        life_m: float | None,
+        *,
+        say: Callable[..., None],
+        show: Callable[..., None],
+        sign: str = "PEN",
     ) -> None:
-        self._path, self._life_m, self._say, self._show = path, life_m, say, show
+        """sign: the file that says that a new pen is in."""
+        self._path, self._life_m, self._say, self._show, self._sign = path, life_m, say, show, sign
         self._lock = threading.Lock()
         self.ink_m = _metres_in(path)
         self._show_it()
@@ -59,7 +66,7 @@ class PenLife:
     def _words(self) -> str:
         return (
             f"the pen has drawn {self.ink_m:.0f} m and lasts {self._life_m:g} m: "
-            "change it, then put a file PEN into the inbox"
+            f"change it, then put a file {self._sign} into the inbox"
         )
 
 

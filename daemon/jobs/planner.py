@@ -61,7 +61,7 @@ def plan_picture(
 
     name: what people call the picture, if not by the path of `source`.
     """
-    stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings)
+    stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings, machine)
     with stages("decode"):
         given = decode(source, max_megapixels=settings.intake.max_megapixels, name=name)
     with stages("page"):
@@ -198,7 +198,7 @@ def _write_pictures(
     estimated_s: float,
     understood: tuple[PageImage, Segmentation, LineGraph, Drawing],
 ) -> None:
-    machine = next(iter(settings.machines.values()))
+    (machine,) = settings.machines.values()
     corner_mm = box_origin_mm(settings.sheet, machine)
     sheet = preview(toolpath, box_mm=settings.sheet.box_mm, box_origin_mm=corner_mm, seconds=estimated_s)
     svg = write_svg(toolpath, size_mm=settings.sheet.box_mm, corner_mm=corner_mm)

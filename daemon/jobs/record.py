@@ -22,6 +22,7 @@ def write_record(folder: Path, job: Job) -> None:
     told = {"name": job.name, "state": job.state.value, "words": job.words, "changed_s": job.changed_s}
     told |= {"reason": job.reason.value, "remedy": meaning_of(job.state, job.reason).remedy}
     told |= {"strokes": job.strokes, "certain": job.certain, "possible": job.possible}
+    told |= {"machine": job.machine, "bound_to": job.bound_to}
     write_durably(folder / RECORD_NAME, json.dumps(told).encode())
 
 
@@ -33,9 +34,10 @@ def read_record(folder: Path) -> Job | None:
     try:
         told = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
         extent = int(told["strokes"]), int(told["certain"]), int(told["possible"])
-        state, reason = State(told["state"]), Reason(told.get("reason", ""))
-        words, changed_s = str(told["words"]), float(told["changed_s"])
-        job = Job(folder.name, str(told["name"]), state, words, changed_s, *extent, reason)
+        reason = Reason(told.get("reason", ""))
+        last = str(told["name"]), State(told["state"]), str(told["words"]), float(told["changed_s"])
+        machines = str(told.get("machine", "")), str(told.get("bound_to", ""))
+        job = Job(folder.name, *last, *extent, *machines, reason)
     except FileNotFoundError:
         planned = (folder / "program.gcode").exists()
         return _untold(Job(folder.name, folder.name, State.DRAWING, "", 0.0)) if planned else None

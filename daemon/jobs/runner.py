@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import logging
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
-from daemon.errors import LinedrawError
+from daemon.errors import LinedrawError, unknown
 from daemon.jobs.desk import DISK_RETRY_S, Desk
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.orders import MachineOrder
@@ -21,71 +21,111 @@ PLANNING_WITHIN_S = 150.0
 """Of the planning loop, beyond the time limit of a picture."""
 
 
-class Runner:
-    """`plan_on` and `draw_on` each run in a thread of their own until `end`; everything else comes from any thread.
+_DRAINED = "a person said drain: nothing more is begun"
 
-    The orders return a sentence for the person who gave them.
+
+class Runner:
+    """`plan_on` and a `draw_on` for each machine run in a thread of their own until `end`; the rest comes from any.
+
+    The orders return a sentence for the person who gave them. machine: its name; with one machine it may be "", and
+    with several `stop` and `pause` then mean all of them. Raises LinedrawError where it is not clear which.
     """
 
     def __init__(
-        self, desk: Desk, pool: Pool, planning: Planning, drawing: Drawing, pulse: Pulse | None = None
+        self, desk: Desk, pool: Pool, planning: Planning, drawings: Mapping[str, Drawing], pulse: Pulse | None = None
     ) -> None:
-        self._desk, self._pool, self._planning, self._drawing = desk, pool, planning, drawing
+        """drawings: by the name of the machine."""
+        self._desk, self._pool, self._planning, self._drawings = desk, pool, planning, drawings
         self._pulse = pulse or Pulse()
 
     def plan_on(self) -> None:
         heart, limit_s = self._pulse.planning, self._pool.settings.planning.time_limit_s
-        self._turn_on(self._planning.turn, heart, PLANNING_WITHIN_S + limit_s)
+        self._turn_on(self._planning.turn, heart, PLANNING_WITHIN_S + limit_s, list(self._drawings.values()))
         self._pool.close()
 
-    def draw_on(self) -> None:
-        self._turn_on(self._drawing.turn, self._pulse.drawing, DRAWING_WITHIN_S)
-        self._drawing.end()
+    def draw_on(self, machine: str) -> None:
+        drawing = self._drawings[machine]
+        self._turn_on(drawing.turn, self._pulse.drawing(machine), DRAWING_WITHIN_S, [drawing])
+        drawing.end()
 
-    def new_sheet(self) -> str:
-        self._desk.new_sheet()
+    def new_sheet(self, machine: str = "") -> str:
+        self._one(machine).station.new_sheet()
         return "a new sheet is in"
 
-    def stop(self) -> str:
+    def stop(self, machine: str = "") -> str:
         """Hold at once, pen up, and freeze the queue."""
-        self._drawing.stop()
-        self._desk.hold("a person stopped the machine")
-        # Once more, for a job that began in between.
-        self._drawing.stop()
-        return "stopped, no job starts until you say `linedrawd go`"
+        stopped = [self._one(machine)] if machine else list(self._drawings.values())
+        for drawing in stopped:
+            drawing.stop()
+        for drawing in stopped:
+            drawing.station.hold("a person stopped the machine")
+            # Once more, for a job that began in between.
+            drawing.stop()
+        return f"stopped, no job starts until you say {_commands(stopped, 'go')}"
 
-    def go(self) -> str:
-        self._desk.go()
+    def drain(self, machine: str = "") -> str:
+        """What is being drawn is finished, and nothing more is begun."""
+        station = self._one(machine).station
+        station.hold(_DRAINED)
+        return f"what is being drawn is finished, no further job starts until you say {station.command('go')}"
+
+    def go(self, machine: str = "") -> str:
+        self._one(machine).station.go()
         return "jobs may start again"
 
     def cancel(self, job_id: str) -> str:
         before = self._desk.cancel(job_id)
+        job = self._desk.find(job_id)
         if before is State.PLANNING:
             self._pool.interrupt()
         elif before in UNDER_THE_PEN:
-            self._drawing.stop()
-        return f"job {self._desk.find(job_id).id} is dropped (it was {before.value})"
+            self._drawings[job.machine].stop()
+        return f"job {job.id} is dropped (it was {before.value})"
 
-    def pause(self, *, at_once: bool) -> str:
+    def pause(self, machine: str = "", *, at_once: bool) -> str:
         """Stand still with the pen up, at the end of the stroke or at once."""
-        self._drawing.pause(at_once=at_once)
-        return f"the machine pauses {'at once' if at_once else 'at the end of the stroke'}: `linedrawd resume` goes on"
+        every = not machine and self._desk.several
+        paused = [each for each in self._drawings.values() if each.station.draws] if every else [self._one(machine)]
+        if not paused:
+            raise LinedrawError("nothing is being drawn: `linedrawd stop` keeps the next drawing from starting")
+        for each in paused:
+            each.pause(at_once=at_once)
+        return (
+            f"the machine pauses {'at once' if at_once else 'at the end of the stroke'}: "
+            f"{_commands(paused, 'resume')} goes on"
+        )
 
-    def resume(self) -> str:
-        self._drawing.resume()
+    def resume(self, machine: str = "") -> str:
+        self._one(machine).resume()
         return "the drawing goes on"
 
-    def move(self, order: MachineOrder) -> str:
+    def move(self, order: MachineOrder, machine: str = "") -> str:
         """Between two drawings; waits until it has been done."""
-        return self._drawing.ask(order)
+        return self._one(machine).ask(order)
+
+    def placed(self, machine: str) -> bool:
+        """This machine knows where the sheet's origin is."""
+        return self._drawings[machine].placed
+
+    def _one(self, machine: str) -> Drawing:
+        names = list(self._drawings)
+        if machine in self._drawings:
+            return self._drawings[machine]
+        if machine:
+            raise LinedrawError(unknown(f"the machine {machine}", machine, names))
+        if len(names) > 1:
+            raise LinedrawError(f"which machine? say --machine and one of {', '.join(names)}")
+        return self._drawings[names[0]]
 
     def end(self) -> None:
         """Hold at once, pen up; the loops come to their end."""
         self._desk.end()
-        self._drawing.stop()
+        for drawing in self._drawings.values():
+            drawing.stop()
         self._pool.close()
 
-    def _turn_on(self, turn: Callable[[], float], heart: Heart, within_s: float) -> None:
+    def _turn_on(self, turn: Callable[[], float], heart: Heart, within_s: float, drawings: Sequence[Drawing]) -> None:
+        """drawings: what is stopped by a mistake of ours."""
         while not self._desk.ending:
             heart.within(within_s)
             seen = self._desk.changes
@@ -97,8 +137,15 @@ class Runner:
             except Exception as error:
                 # A mistake of ours must not start anything: what the machine does is no longer known.
                 self._desk.say(traceback.format_exc(), level=logging.ERROR)
-                self._drawing.stop()
+                for drawing in drawings:
+                    drawing.stop()
                 words = f"a mistake in linedrawd ({error!r}): please report it with linedrawd.log"
                 self._desk.trouble(words)
-                self._desk.hold(words)
+                for drawing in drawings:
+                    drawing.station.hold(words)
                 self._desk.wait(DISK_RETRY_S)
+
+
+def _commands(drawings: Sequence[Drawing], order: str) -> str:
+    """How each of them is told."""
+    return ", ".join(drawing.station.command(order) for drawing in drawings)

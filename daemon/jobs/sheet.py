@@ -56,3 +56,11 @@ def homes(machine: Machine) -> bool:
 def counts_from_home(machine: Machine) -> bool:
     """Homed, it knows where the sheet's origin is."""
     return isinstance(machine, DobotMachine) or (isinstance(machine, GrblMachine) and machine.origin == "homed")
+
+
+def holds_box(sheet: Sheet, machine: Machine) -> bool:
+    """The machine reaches all of the box; an arm may still not reach every point of it."""
+    left, bottom = box_origin_mm(sheet, machine)
+    low, reach = reach_low_mm(sheet, machine), reach_mm(machine)
+    right, top = left + sheet.box_mm[0], bottom + sheet.box_mm[1]
+    return left >= low[0] and bottom >= low[1] and right <= low[0] + reach[0] and top <= low[1] + reach[1]

@@ -12,6 +12,7 @@ from firmware_protocol.session import Paused, Resumed, Waiting
 
 if TYPE_CHECKING:
     from daemon.jobs.desk import Desk
+    from daemon.jobs.station import Station
 
 Stand: TypeAlias = Paused | Waiting | Resumed
 _PAUSED = "paused{where}, the pen is up: `linedrawd resume` goes on, `linedrawd stop` ends it"
@@ -34,10 +35,13 @@ def stand(event: Stand, job_id: str, desk: Desk, show: Callable[..., None]) -> N
         _step(desk, job_id, state, reason, words)
 
 
-def forget_place(desk: Desk, why: str) -> None:
-    """The machine no longer knows where its pen is, so that what it had left in order cannot simply go on."""
+def forget_place(desk: Desk, why: str, station: Station | None = None) -> None:
+    """The machine no longer knows where its pen is, so that what it had left in order cannot simply go on.
+
+    station: that of the machine; None: all of them.
+    """
     for job in desk.journal.jobs(State.INTERRUPTED):
-        if job.reason is Reason.POSITION_KNOWN:
+        if job.reason is Reason.POSITION_KNOWN and station in (None, desk.station(job.machine)):
             words = f"{why}, so the place of the pen is no longer known ({job.on_paper})"
             _step(desk, job.id, State.INTERRUPTED, Reason.POSITION_UNKNOWN, words)
 

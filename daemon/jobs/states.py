@@ -41,8 +41,10 @@ class Reason(Enum):
 STEPS: dict[tuple[State, State], str] = {
     (State.QUEUED, State.PLANNING): "the worker is free",
     (State.PLANNING, State.PLANNED): "planned",
-    (State.PLANNING, State.QUEUED): "the worker died for the first time, or the daemon ended",
+    (State.PLANNING, State.QUEUED): "the worker died for the first time, the daemon ended, or another machine reaches",
     (State.PLANNED, State.WAITING): "no machine, or no sheet",
+    (State.PLANNED, State.QUEUED): "another machine is free",
+    (State.WAITING, State.QUEUED): "another machine is free",
     (State.PLANNED, State.DRAWING): "its turn",
     (State.WAITING, State.DRAWING): "its turn",
     (State.DRAWING, State.PAUSED): "pause, door, feed hold",

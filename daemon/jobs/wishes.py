@@ -14,19 +14,24 @@ SIDE_NAME = "side.toml"
 """Of the side file in a job's folder."""
 
 
-def with_wishes(settings: Settings, wishes: Wishes, place: str) -> Settings:
-    """The settings for one picture. Raises SettingsError, which names the place, the key and the cure."""
-    name = settings.machine_name
-    if wishes.machine and wishes.machine not in settings.machines:
-        raise SettingsError(unknown(f"{place}: machine '{wishes.machine}'", wishes.machine, list(settings.machines)))
-    sheet, machine = settings.sheet, settings.machines[name]
+def with_wishes(settings: Settings, wishes: Wishes, machine: str, place: str) -> Settings:
+    """The settings for one picture on this machine. Raises SettingsError: the place, the key and the cure."""
+    sheet, own = settings.sheet_of(machine), settings.machines[machine]
     if wishes.box_mm:
         if 2 * sheet.margin_mm >= min(wishes.box_mm):
             raise SettingsError(f"{place}: size_mm leaves no room in the margin of {sheet.margin_mm:g} mm: say more")
         sheet = sheet.model_copy(update={"box_mm": wishes.box_mm, "size": "fit"})
     if wishes.pen:
-        machine = machine.model_copy(update={"pen": _pen(machine.pen, wishes, place)})
-    return settings.model_copy(update={"sheet": sheet, "machines": {name: machine}})
+        own = own.model_copy(update={"pen": _pen(own.pen, wishes, place)})
+    own = own.model_copy(update={"box_mm": None, "box_origin_mm": None, "corner": None})
+    return settings.model_copy(update={"sheet": sheet, "machines": {machine: own}})
+
+
+def machines_for(settings: Settings, wishes: Wishes, place: str) -> list[str]:
+    """The machines that a picture with these wishes may be drawn by. Raises SettingsError where there is none."""
+    if wishes.machine and wishes.machine not in settings.machines:
+        raise SettingsError(unknown(f"{place}: machine '{wishes.machine}'", wishes.machine, list(settings.machines)))
+    return [wishes.machine] if wishes.machine else sorted(settings.sharing)
 
 
 def _pen(pen: PenSettings, wishes: Wishes, place: str) -> PenSettings:
@@ -51,9 +56,8 @@ def _sentence(loc: tuple[int | str, ...], words: str, pen: PenSettings, place: s
     return f"{where}: {words}" if key in known else unknown(where, key, known)
 
 
-def settings_for(folder: Path, settings: Settings) -> Settings:
-    """The settings for the job in this folder. Raises SettingsError where its side file does not suit them."""
-    path = folder / SIDE_NAME
-    if not path.exists():
-        return settings
-    return with_wishes(settings, parse(read_bytes(path), f"{folder.name}/{SIDE_NAME}"), f"{folder.name}/{SIDE_NAME}")
+def settings_for(folder: Path, settings: Settings, machine: str) -> Settings:
+    """The settings for the job in this folder. Raises SettingsError where its side file does not suit the machine."""
+    place, path = f"{folder.name}/{SIDE_NAME}", folder / SIDE_NAME
+    wishes = parse(read_bytes(path), place) if path.exists() else Wishes()
+    return with_wishes(settings, wishes, machine, place)

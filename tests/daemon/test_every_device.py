@@ -98,14 +98,15 @@ def test_an_emco_behind_a_folder_gets_a_whole_program_and_its_end_is_an_estimate
     (tmp_path / "share").mkdir()
     text = f"device = 'emco'\ndialect = 'fanuc'\nurl = 'file://{tmp_path}/share'"
     with running(settings_of(tmp_path, text), planner=PLANNED) as daemon:
-        show, sent = daemon.parts.desk.show, Event()
+        station, sent = daemon.parts.desk.stations["left"], Event()
+        show = station.show
 
         def show_and_tell(**values: object) -> None:
             show(**values)
             if str(values.get("words")).startswith("everything has been sent"):
                 sent.set()
 
-        daemon.parts.desk.show = show_and_tell
+        station.show = show_and_tell
         (daemon.settings.paths.inbox / "house.png").write_text("a picture")
         assert sent.wait(20)
         (file,) = (tmp_path / "share").iterdir()

@@ -20,7 +20,8 @@ from daemon.errors import SettingsError
 from daemon.jobs.grbl import touches
 from daemon.jobs.journal import Job
 from daemon.jobs.states import State
-from daemon.service import Parts, Service, parts_of
+from daemon.parts import Parts, parts_of
+from daemon.service import Service
 from firmware_protocol.ink import PenRule
 from tests.daemon.jobs.test_pool import PLANNER
 
@@ -45,7 +46,7 @@ class Daemon:
             seen, jobs = desk.changes, desk.journal.jobs()
             if true(jobs):
                 return jobs
-            assert time.monotonic() < until, (jobs, desk.held)
+            assert time.monotonic() < until, jobs
             desk.wait(max(0.0, until - time.monotonic()), since=seen)
 
     def order(self, order: str, job: str = "") -> str:
@@ -135,7 +136,7 @@ def test_a_machine_that_fails_in_mid_job_interrupts_it_and_nothing_starts_until_
         first, second = daemon.wait_for(lambda jobs: jobs[1:] and jobs[1].state is State.PLANNED)
         assert first.state is State.INTERRUPTED
         assert "of 2 strokes 0 are certainly drawn" in first.words
-        assert daemon.parts.desk.held
+        assert daemon.parts.desk.stations["left"].held
     assert second.state is State.PLANNED
     assert daemon.status()["held"]
 
@@ -167,14 +168,15 @@ def test_stop_freezes_the_queue_and_go_frees_it(tmp_path: Path) -> None:
 
 def test_an_end_in_mid_drawing_lifts_the_pen_and_leaves_the_job_interrupted(tmp_path: Path) -> None:
     with running(settings_of(tmp_path, port="sim://grbl?speed=1")) as daemon:
-        show, begun = daemon.parts.desk.show, Event()
+        station, begun = daemon.parts.desk.stations["left"], Event()
+        show = station.show
 
         def show_and_tell(**values: object) -> None:
             show(**values)
             if float(str(values.get("percent", 0))) > 30:  # the pen is on the sheet
                 begun.set()
 
-        daemon.parts.desk.show = show_and_tell
+        station.show = show_and_tell
         daemon.drop("a.png")
         assert begun.wait(20)
     log = daemon.log()
@@ -197,7 +199,7 @@ def test_the_status_is_there_before_anything_happens(tmp_path: Path) -> None:
     settings, found = settings_of(tmp_path), list[str]()
     with parts_of(settings, planner=PLANNER) as parts:
         service = Service(settings, parts)
-        parts.desk.recover = lambda inbox: found.append(settings.paths.status.read_text())  # type: ignore[method-assign]
+        parts.desk.recover = lambda: found.append(settings.paths.status.read_text())  # type: ignore[method-assign]
         service.end()
         service.run()
     assert '"state": "idle"' in found[0]
@@ -244,8 +246,8 @@ def test_a_side_file_makes_copies_and_its_mistakes_are_told_until_they_are_mende
 
 def test_a_file_says_that_a_new_pen_is_in(tmp_path: Path) -> None:
     with running(settings_of(tmp_path)) as daemon:
-        daemon.parts.pen.ink_m = 12.0
+        daemon.parts.pens["left"].ink_m = 12.0
         daemon.drop("PEN", "")
-        while daemon.parts.pen.ink_m:
+        while daemon.parts.pens["left"].ink_m:
             daemon.parts.desk.wait(0.05)
         assert "a new pen is in drawn_with_the_old_m=12" in daemon.log()

@@ -25,18 +25,18 @@ class Clock:
     def lasts_s(self) -> float:
         """How long after the last beat the drawing loop is late."""
         self.now_s += 1e6
-        return 1e6 - self.pulse.drawing.late_s
+        return 1e6 - self.pulse.drawing("plotter").late_s
 
 
 def test_a_turn_of_the_link_is_a_beat() -> None:
     clock = Clock()
-    Beats(clock.pulse).turned()
+    Beats(clock.pulse.drawing("plotter")).turned()
     assert clock.lasts_s() == pytest.approx(LINK_WITHIN_S)
 
 
 def test_a_machine_that_says_nothing_while_it_draws_is_waited_for() -> None:
     clock, heard = Clock(), list[Event]()
-    Beats(clock.pulse).hearing(heard.append)(Sent(3600.0))
+    Beats(clock.pulse.drawing("plotter")).hearing(heard.append)(Sent(3600.0))
     assert heard == [Sent(3600.0)]
     assert clock.lasts_s() == pytest.approx(LINK_WITHIN_S + 3600.0)
 
@@ -103,5 +103,5 @@ def test_the_drawing_loop_beats_before_each_turn(tmp_path: Path) -> None:
         bench.desk.end()
         return 0.0
 
-    bench.runner._turn_on(turn, clock.pulse.drawing, DRAWING_WITHIN_S)
+    bench.runner._turn_on(turn, clock.pulse.drawing("plotter"), DRAWING_WITHIN_S, [bench.drawing])
     assert bench.desk.ending

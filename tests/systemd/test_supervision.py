@@ -13,7 +13,7 @@ import pytest
 from daemon.errors import LinedrawError, SettingsError
 from daemon.notify import Notifier
 from daemon.pulse import Pulse
-from daemon.status import Status
+from daemon.status import MachineStatus, Status
 from daemon.supervision import Supervision, in_words
 from tests.systemd.manager import Manager, manager
 
@@ -103,24 +103,26 @@ def fed(bench: Bench) -> bool:
     return not bench.systemd.nothing()
 
 
-@pytest.mark.parametrize("heart", ["drawing", "planning", "inbox"])
+@pytest.mark.parametrize("heart", ["drawing (left)", "planning", "inbox (all)"])
 def test_the_watchdog_is_fed_until_a_loop_stands_still(bench: Bench, heart: str) -> None:
+    pulse = bench.pulse
+    hearts = {each.name: each for each in (pulse.drawing("left"), pulse.planning, pulse.inbox("all"))}
     assert fed(bench), "a loop that has not begun is not late"
-    getattr(bench.pulse, heart).within(100.0)
+    hearts[heart].within(100.0)
     assert fed(bench)
     assert not fed(bench)
     assert not fed(bench)
     assert bench.said == [f"the {heart} loop is 100 s late: the watchdog is not fed, systemd starts linedrawd anew"]
-    getattr(bench.pulse, heart).within(100.0)
+    hearts[heart].within(100.0)
     assert fed(bench)
 
 
-def test_while_it_draws_only_the_drawing_loop_counts(bench: Bench) -> None:
-    bench.pulse.inbox.within(1.0)
-    bench.pulse.planning.within(1.0)
-    bench.status = Status(state="drawing")
+def test_while_it_draws_only_the_loops_that_draw_count(bench: Bench) -> None:
+    for heart in (bench.pulse.inbox("all"), bench.pulse.planning, bench.pulse.drawing("right")):
+        heart.within(1.0)
+    bench.status = Status(machines={"left": MachineStatus(state="drawing"), "right": MachineStatus(state="idle")})
     assert fed(bench)
-    bench.pulse.drawing.within(1.0)
+    bench.pulse.drawing("left").within(1.0)
     assert not fed(bench)
 
 

@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from daemon.config import Options, load_settings
-from daemon.service import Service, parts_of
+from daemon.parts import parts_of
+from daemon.service import Service
 
 PLANNER = "tests.torture.planner"
 

@@ -199,14 +199,14 @@ import daemon.jobs.pool
 from daemon.cli.__main__ import main
 from daemon.status import StatusBoard
 
-change, sent = StatusBoard.change, []
+change, sent = StatusBoard.change_machine, []
 
-def change_and_signal(board, **values):
-    change(board, **values)
+def change_and_signal(board, machine, **values):
+    change(board, machine, **values)
     if values.get("percent") and not sent:
         sent.append(os.kill(os.getpid(), NUMBER))
 
-StatusBoard.change = change_and_signal
+StatusBoard.change_machine = change_and_signal
 daemon.jobs.pool.PLANNER = PLANNER
 sys.exit(main())
 """

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -54,7 +55,7 @@ def test_dots_and_straight_lines_fit_in_any_room(
 
 def said(**values: object) -> dict[str, object]:
     status = Status(state="drawing", pid=os.getpid(), machine="plotter", port="sim://grbl", firmware="Grbl 1.1h")
-    found = {name: getattr(status, name) for name in Status.__slots__}
+    found = asdict(status)
     drawn = {"job": "000001-a", "picture": "a.png", "strokes_done": 1, "strokes_total": 2, "percent": 37.2}
     return found | drawn | {"seconds_left": 252.0, "changed": clock(NOW_S)} | values
 

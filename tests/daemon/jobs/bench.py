@@ -11,6 +11,7 @@ from typing import Any
 
 from daemon.config import GrblMachine
 from daemon.errors import MachineFault, Unplugged
+from daemon.jobs.allotment import Allotment
 from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders
@@ -21,6 +22,7 @@ from daemon.jobs.orders import Places, rectangle_mm
 from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.runner import Runner
+from daemon.jobs.station import Station
 from daemon.machine.link import Promise, promise_nothing
 from daemon.program.file import load_program
 from daemon.shapes import Program
@@ -142,11 +144,12 @@ class Bench:
             JobFolders(root / "jobs"),
             say=lambda words, **values: self.said.append((words, values)),
             show=self._show,
-            asks_for_sheets=asks_for_sheets,
         )
-        self.planning = Planning(self.desk, self.pool, "plotter")
+        self.station = Station(self.desk, "plotter", show=self._show, asks_for_sheets=asks_for_sheets)
+        self.allotment = Allotment(self.desk)
+        self.planning = Planning(self.desk, self.pool, self.allotment)
         self.drawing = Drawing(
-            self.desk,
+            self.station,
             opened=self.machine.open,
             load=self._load,
             measure=lambda folder: self.pool.measure(folder, "plotter"),
@@ -154,7 +157,7 @@ class Bench:
             places=Places((1.0, 2.0), lambda job: rectangle_mm((0.0, 0.0), (10.0, 20.0)), lambda: Program((), 0)),
             now=lambda: self.now_s,
         )
-        self.runner = Runner(self.desk, self.pool, self.planning, self.drawing)
+        self.runner = Runner(self.desk, self.pool, self.planning, {"plotter": self.drawing})
 
     def _load(self, path: Path) -> Program:
         self.before_drawing()
@@ -200,7 +203,7 @@ class Bench:
 
     def begun(self, *, certain: int = 0, possible: int = 1) -> str:
         """A planned job whose drawing has begun: so many strokes are promised."""
-        job = self.desk.begin_drawing()
+        job = self.station.begin_drawing()
         assert job is not None
         self.journal.promise(job.id, strokes=2, certain=certain, possible=possible)
         return job.id
@@ -218,7 +221,8 @@ class Bench:
         """As after kill -9: nothing is closed in order."""
         self.journal.close()
         after = Bench(self.root, pool=self.pool)
-        after.desk.recover(after.inbox)
+        after.desk.folders.finish_claims(after.inbox)
+        after.desk.recover()
         return after
 
     def close(self) -> None:

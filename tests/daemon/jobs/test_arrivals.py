@@ -15,13 +15,15 @@ import pytest
 from daemon.config import Options, Settings, load_settings
 from daemon.errors import DiskTrouble, SettingsError
 from daemon.intake.rank import rank
+from daemon.jobs.allotment import Allotment
 from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import JobFolders, source_of
 from daemon.jobs.journal import Journal
 from daemon.jobs.states import State
+from daemon.jobs.station import Station
 from daemon.jobs.wishes import SIDE_NAME, settings_for
-from daemon.service import parts_of
+from daemon.parts import parts_of
 from tests.daemon.jobs.test_folder import drop
 
 WISHES = b"copies = 2\nsize_mm = 40\n"
@@ -43,17 +45,18 @@ class Intake:
             self.folders,
             say=_silent,
             show=_silent,
-            asks_for_sheets=False,
             rank=lambda name: rank(name, order),
         )
+        self.station = Station(self.desk, "plotter", show=_silent, asks_for_sheets=False)
+        self.allotment = Allotment(self.desk)
         self.arrivals = Arrivals(self.desk, self.settings, free=free)
 
     def take(self, name: str = "house.png", side: str | None = "house.toml") -> None:
         self.arrivals.take(self.inbox / name, self.inbox / side if side else None)
 
     def recover(self) -> None:
-        self.arrivals.recover(self.inbox)
-        self.desk.recover(self.inbox)
+        self.arrivals.recover({"": self.inbox})
+        self.desk.recover()
 
     def states(self) -> list[str]:
         return [job.state.value for job in self.journal.jobs()]
@@ -113,9 +116,9 @@ def test_the_job_is_planned_by_its_own_wishes(tmp_path: Path) -> None:
     intake = Intake(tmp_path)
     folder = tmp_path / "000001-house"
     folder.mkdir()
-    assert settings_for(folder, intake.settings) == intake.settings
+    assert settings_for(folder, intake.settings, "plotter") == intake.settings
     (folder / SIDE_NAME).write_bytes(b"size_mm = [40, 30]\n[pen]\ndown_mm = -1\n")
-    settings = settings_for(folder, intake.settings)
+    settings = settings_for(folder, intake.settings, "plotter")
     assert settings.sheet.box_mm == (40.0, 30.0)
     assert settings.machines["plotter"].pen.model_dump()["down_mm"] == -1
     assert intake.settings.sheet.box_mm == (64.0, 64.0)
@@ -257,12 +260,12 @@ def test_priority_decides_which_of_those_that_wait_is_planned_and_drawn_first(tm
     for name in ("a.png", "12-b.png", "3-c.png", "3-d.png"):
         drop(intake.inbox, name)
         intake.take(name, None)
-    begun = [intake.desk.begin_planning() for _ in range(2)]
+    begun = [intake.allotment.begin() for _ in range(2)]
     assert [job.name for job in begun if job] == ["3-c.png", "3-d.png"]
     for job in reversed(begun):
         assert job is not None
-        intake.desk.end_planning(job.id)
-    drawn = intake.desk.begin_drawing()
+        intake.allotment.end(job.id)
+    drawn = intake.station.begin_drawing()
     assert drawn is not None
     assert drawn.name == "3-c.png"
 

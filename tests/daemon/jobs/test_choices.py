@@ -14,7 +14,7 @@ from tests.daemon.jobs.bench import Bench, fault
 
 @pytest.fixture
 def choices(bench: Bench) -> Choices:
-    return Choices(bench.desk, placed=lambda: bench.drawing.placed)
+    return Choices(bench.desk, placed=bench.runner.placed)
 
 
 def interrupted(bench: Bench, *, known: bool = False) -> str:
@@ -72,7 +72,7 @@ def test_again_without_its_picture_says_so(bench: Bench, choices: Choices) -> No
 def test_drain_finishes_what_is_drawn_and_begins_nothing(bench: Bench, choices: Choices) -> None:
     bench.planned("a.png")
     bench.planned("b.png")
-    bench.machine.while_drawing = lambda: print(choices.drain())
+    bench.machine.while_drawing = lambda: print(bench.runner.drain())
     for _ in range(2):
         bench.drawing.turn()
     assert (bench.states(), bench.machine.stops) == (["done", "planned"], 0)
@@ -107,7 +107,7 @@ def test_a_machine_that_does_not_know_its_origin_is_given_one_first(bench: Bench
     interrupted(bench)
     with pytest.raises(LinedrawError, match="does not know where the sheet's origin is"):
         choices.resume_from("1", 1)
-    assert (bench.states(), bool(bench.desk.held)) == (["interrupted"], True)
+    assert (bench.states(), bool(bench.station.held)) == (["interrupted"], True)
     bench.drawing.obey(MachineOrder("origin"))
     choices.resume_from("1", 1)
     bench.drawing.turn()
@@ -121,7 +121,7 @@ def test_an_origin_that_is_lost_again_before_the_pen_comes_down_draws_nothing(be
     after = bench.restarted()
     after.drawing.turn()
     assert (after.states(), after.machine.drawn) == (["interrupted"], 0)
-    assert "does not know where the sheet's origin is" in after.desk.held
+    assert "does not know where the sheet's origin is" in after.station.held
     after.journal.close()
 
 

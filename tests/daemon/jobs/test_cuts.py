@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from daemon.config import GrblMachine
+from daemon.jobs.allotment import Allotment
 from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import CLAIMED, JobFolders, write_durably
@@ -24,6 +25,7 @@ from daemon.jobs.moves import GrblMoves
 from daemon.jobs.orders import Places
 from daemon.jobs.planning import Planning
 from daemon.jobs.states import State
+from daemon.jobs.station import Station
 from daemon.machine.link import Promise, promise_nothing
 from daemon.program.file import load_program
 from daemon.shapes import Program
@@ -73,11 +75,12 @@ class House:
         self.journal = Journal(root / "journal.sqlite")
         self.journal._rows.execute("PRAGMA synchronous=OFF")
         told: dict[str, Any] = {"say": lambda words, **values: None, "show": lambda **values: None}
-        self.desk = Desk(self.journal, JobFolders(root / "jobs"), asks_for_sheets=False, **told)
-        self.planning = Planning(self.desk, Planner(), "plotter")  # type: ignore[arg-type]
+        self.desk = Desk(self.journal, JobFolders(root / "jobs"), **told)
+        self.station = Station(self.desk, "plotter", show=told["show"], asks_for_sheets=False)
+        self.planning = Planning(self.desk, Planner(), Allotment(self.desk))  # type: ignore[arg-type]
         self.machine = Plotter(sent, reach)
         self.drawing = Drawing(
-            self.desk,
+            self.station,
             opened=self.machine.open,
             load=self._load,
             measure=lambda folder: None,
@@ -89,15 +92,19 @@ class House:
         self.machine.picture = (path.parent / "source.png").read_text()
         return load_program(path)
 
+    def recover(self) -> None:
+        self.desk.folders.finish_claims(self.inbox)
+        self.desk.recover()
+
     def live(self) -> None:
         """From the inbox to the paper; a person says `go` after every fault."""
-        self.desk.recover(self.inbox)
+        self.recover()
         for picture in sorted(self.inbox.glob("*.png")):
             self.desk.add(self.desk.folders.take(picture), picture.name)
         for _ in range(2 * len(PICTURES) + 2):
             self.planning.turn()
-            if self.desk.held:
-                self.desk.go()
+            if self.station.held:
+                self.station.go()
             self.drawing.turn()
 
     def places_of(self, picture: str) -> int:
@@ -147,7 +154,7 @@ def check_after(root: Path, sent: Counter[tuple[str, int]], where: str) -> None:
     """What a restart finds, and what becomes of it when a person lets everything go on."""
     at_cut = Counter(sent)
     house = House(root, sent)
-    house.desk.recover(house.inbox)
+    house.recover()
     for picture in PICTURES:
         assert house.places_of(picture) == 1, f"{picture} {where}"
     for job in house.journal.jobs():

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from daemon.errors import DiskTrouble
-from daemon.jobs.journal import UNTOLD, DamagedJournal, Journal
+from daemon.jobs.journal import UNTOLD, VERSION, DamagedJournal, Journal
 from daemon.jobs.open_journal import open_journal
 from daemon.jobs.states import Reason, State
 
@@ -66,14 +66,14 @@ def test_a_sheet_is_used_from_its_first_drawing_until_a_new_one_is_in(tmp_path: 
         journal.add("1", "house.png")
         for state in (State.PLANNING, State.PLANNED):
             journal.step("1", state)
-        assert not journal.sheet_used
+        assert not journal.kept.of("").sheet_used
         journal.step("1", State.DRAWING)
     with closing(Journal(tmp_path / "j")) as journal:
-        assert journal.sheet_used
-        journal.new_sheet()
-        assert not journal.sheet_used
+        assert journal.kept.of("").sheet_used
+        journal.new_sheet("")
+        assert not journal.kept.of("").sheet_used
     with closing(Journal(tmp_path / "j")) as journal:
-        assert not journal.sheet_used
+        assert not journal.kept.of("").sheet_used
         assert journal.jobs()[0].state is State.DRAWING
 
 
@@ -88,7 +88,7 @@ def test_a_step_that_a_full_disk_refuses_has_not_happened(tmp_path: Path) -> Non
 
 def test_a_journal_of_a_newer_version_is_refused(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "j")) as newer:
-        newer.execute("PRAGMA user_version=4")
+        newer.execute(f"PRAGMA user_version={VERSION + 1}")
     with pytest.raises(DiskTrouble, match="newer version"):
         Journal(tmp_path / "j")
 
@@ -151,9 +151,9 @@ def test_an_end_that_a_full_disk_refuses_has_not_happened(tmp_path: Path) -> Non
 def test_a_sheet_on_which_nothing_was_drawn_is_unused_again(tmp_path: Path) -> None:
     with closing(in_drawing(tmp_path / "j")) as journal:
         journal.step("1", State.PLANNED)
-        assert not journal.sheet_used
+        assert not journal.kept.of("").sheet_used
     with closing(Journal(tmp_path / "j")) as journal:
-        assert not journal.sheet_used
+        assert not journal.kept.of("").sheet_used
 
 
 def test_a_read_only_journal_says_what_to_do(tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ def test_while_held_a_port_is_opened_for_an_order_and_homed_only_to_move(
     bench.runner.stop()
     assert not order(bench, name).startswith("refused")
     assert (bench.machine.opened, bench.machine.still, bench.machine.closed) == (1, still, closed)
-    assert bench.desk.held
+    assert bench.station.held
 
 
 def test_an_order_while_a_picture_is_drawn_is_refused_with_its_name(bench: Bench) -> None:

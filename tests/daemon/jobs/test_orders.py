@@ -36,7 +36,7 @@ def test_an_end_in_mid_drawing_is_held_after_a_restart_and_is_not_measured(bench
     after = bench.restarted()
     after.drawing.turn()
     assert after.states() == ["interrupted", "planned"]
-    assert after.desk.held.startswith("linedrawd ended in the middle of a drawing")
+    assert after.station.held.startswith("linedrawd ended in the middle of a drawing")
     after.journal.close()
 
 
@@ -124,7 +124,7 @@ def test_a_job_found_in_drawing_is_interrupted_its_pen_is_lifted_and_nothing_els
     assert (after.machine.lifted, after.machine.still, after.machine.drawn) == (1, True, 0)
     assert (after.machine.opened, after.machine.closed) == (1, 1)
     assert "the last drawing was cut off: the pen has been lifted, and nothing else moves" in after.sayings()
-    assert after.desk.held
+    assert after.station.held
     after.runner.go()
     after.drawing.turn()
     assert after.states() == ["interrupted", "done"]
@@ -162,7 +162,7 @@ def test_a_pen_that_cannot_be_lifted_is_said_once(bench: Bench) -> None:
 
 def test_a_job_found_in_planning_is_planned_again(bench: Bench) -> None:
     bench.drop()
-    bench.desk.begin_planning()
+    bench.allotment.begin()
     after = bench.restarted()
     assert after.states() == ["queued"]
     after.journal.close()

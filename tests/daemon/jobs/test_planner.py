@@ -28,7 +28,7 @@ def settings() -> Settings:
 def planned(settings: Settings, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("planned")
     (folder / "source.jpg").write_bytes(MARKER.read_bytes())
-    plan_picture(folder / "source.jpg", folder, settings, settings.machine_name)
+    plan_picture(folder / "source.jpg", folder, settings, "plotter")
     return folder
 
 
@@ -60,7 +60,7 @@ def test_executed_ink_is_compared_with_the_given_picture(
     from_px = np.array(read(planned / "report.json")["from_px"])
     ink = [place(np.array(stroke), from_px) + shift_mm for stroke in read(planned / "strokes.json")["strokes"]]
     (planned / "ink.json").write_text(json.dumps({"strokes": [line.tolist() for line in ink]}))
-    measure_ink(planned, settings, settings.machine_name)
+    measure_ink(planned, settings, "plotter")
     report = read(planned / "report.json")
     assert report["fidelity_of"] == "executed"
     assert least <= report["fidelity"]["f1"] <= most
@@ -72,5 +72,5 @@ def test_a_page_that_is_black_or_white_all_over_fails_with_a_sentence_and_leaves
 ) -> None:
     cv2.imwrite(str(tmp_path / "source.png"), np.full((400, 300), level, np.uint8))
     with pytest.raises(NothingToDraw, match="300 x 400 px holds no line to draw: give a drawing"):
-        plan_picture(tmp_path / "source.png", tmp_path, settings, settings.machine_name)
+        plan_picture(tmp_path / "source.png", tmp_path, settings, "plotter")
     assert [path.name for path in tmp_path.iterdir()] == ["source.png"]

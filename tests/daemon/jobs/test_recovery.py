@@ -27,9 +27,9 @@ def without_journal(bench: Bench) -> Bench:
 
 def test_a_cut_before_the_first_stroke_lets_the_job_wait_for_its_turn(bench: Bench) -> None:
     bench.planned()
-    bench.desk.begin_drawing()
+    bench.station.begin_drawing()
     after = bench.restarted()
-    assert (after.states(), after.desk.held) == (["planned"], "")
+    assert (after.states(), after.station.held) == (["planned"], "")
     after.drawing.turn()
     assert after.states() == ["done"]
     after.journal.close()
@@ -48,7 +48,7 @@ def test_a_fault_before_the_first_stroke_holds_but_loses_nothing(bench: Bench) -
     bench.machine.endings = [Ended(Verdict.ALARM, 0, 0, False, False, "alarm: look")]
     bench.planned()
     bench.drawing.turn()
-    assert (bench.states(), bench.desk.held) == (["planned"], "alarm: look")
+    assert (bench.states(), bench.station.held) == (["planned"], "alarm: look")
     bench.runner.go()
     bench.drawing.turn()
     assert bench.states() == ["done"]
@@ -72,7 +72,7 @@ def test_a_lost_journal_is_made_again_from_the_folders_and_nothing_is_drawn_twic
     ]
     assert (after.journal.jobs()[1].certain, after.journal.jobs()[1].possible) == (1, 2)
     assert "how far this drawing came" in after.words(2)
-    assert "the journal was lost" in after.desk.held
+    assert "the journal was lost" in after.station.held
     after.journal.close()
 
 

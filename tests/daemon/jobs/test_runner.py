@@ -217,15 +217,15 @@ def test_a_mistake_of_ours_holds_everything(bench: Bench) -> None:
         bench.desk.ending = True
         raise KeyError("a mistake")
 
-    bench.runner._turn_on(mistake, Heart("drawing"), 1.0)
-    assert "a mistake in linedrawd (KeyError('a mistake'))" in bench.desk.held
-    assert bench.shown["last_error"] == bench.desk.held
+    bench.runner._turn_on(mistake, Heart("drawing"), 1.0, [bench.drawing])
+    assert "a mistake in linedrawd (KeyError('a mistake'))" in bench.station.held
+    assert bench.shown["last_error"] == bench.station.held
     assert bench.machine.stops == 0
 
 
 def test_the_loops_draw_what_comes_and_end(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
-    loops = [Thread(target=bench.runner.plan_on), Thread(target=bench.runner.draw_on)]
+    loops = [Thread(target=bench.runner.plan_on), Thread(target=bench.runner.draw_on, args=("plotter",))]
     for loop in loops:
         loop.start()
     for number in range(5):

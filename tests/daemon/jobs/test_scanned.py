@@ -38,6 +38,6 @@ def test_how_large_it_is_drawn(
     grey[78:82, 40:200] = 0
     page = tiff(WIDTH_PX, HEIGHT_PX, grey.tobytes(), more=RESOLUTION if stated else None)  # type: ignore[arg-type]
     (tmp_path / "source.tiff").write_bytes(page)
-    plan_picture(tmp_path / "source.tiff", tmp_path, settings, settings.machine_name, name=name)
+    plan_picture(tmp_path / "source.tiff", tmp_path, settings, "plotter", name=name)
     from_px = json.loads((tmp_path / "report.json").read_text())["from_px"]
     assert from_px[0][0] == pytest.approx(mm_per_px)

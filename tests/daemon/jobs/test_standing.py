@@ -113,7 +113,7 @@ def test_a_daemon_that_is_killed_while_the_pen_stands_finds_the_job_interrupted(
     after = bench.restarted()
     assert of(after) == (State.INTERRUPTED, Reason.POSITION_UNKNOWN)
     assert "of 2 strokes 1 are certainly drawn" in after.words()
-    assert (after.desk.held != "", after.desk.cut_off) == (True, True)
+    assert (after.station.held != "", after.station.cut_off) == (True, True)
     after.journal.close()
 
 
@@ -196,7 +196,7 @@ def test_a_machine_that_is_unplugged_afterwards_forgets_it(bench: Bench) -> None
     bench.drawing.turn()
     assert of(bench) == (State.INTERRUPTED, Reason.POSITION_UNKNOWN)
     with pytest.raises(LinedrawError, match="does not know where the sheet's origin is"):
-        Choices(bench.desk, placed=lambda: bench.drawing.placed).resume_from("1", 1)
+        Choices(bench.desk, placed=bench.runner.placed).resume_from("1", 1)
 
 
 def test_motors_that_were_switched_off_forget_it(bench: Bench) -> None:
@@ -215,7 +215,7 @@ def test_only_a_machine_that_has_lost_its_place_homes_before_it_goes_on(bench: B
     bench.drawing._load = lambda path: with_homing(load(path))
     interrupted(bench, known=known)
     assert bench.machine.programs[0][0] == "$H"
-    Choices(bench.desk, placed=lambda: bench.drawing.placed).resume_from("1", 1)
+    Choices(bench.desk, placed=bench.runner.placed).resume_from("1", 1)
     bench.drawing.turn()
     assert ("$H" in bench.machine.programs[1], bench.machine.opened) == ((False, 1) if known else (True, 2))
     assert "G1 X9 Y5 F1200" in bench.machine.programs[1]
