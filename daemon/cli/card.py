@@ -15,7 +15,7 @@ from daemon.jobs.card import card_programs, card_seconds, draw_card, gauge_words
 from daemon.jobs.devices import check, opened
 from daemon.jobs.open_machine import OpenMachine
 from daemon.places import usual_file
-from daemon.setup.edit import Values, lines_of, replace_file, with_keys
+from daemon.setup.edit import Values, lines_of, put_back, replace_file, with_keys
 
 HEAR_EVERY_S = 0.2
 
@@ -65,10 +65,10 @@ def settings_file(args: argparse.Namespace, environment: dict[str, str]) -> Path
     return home / "linedrawd" / "linedrawd.toml"
 
 
-def write(file: Path, values: Values, *, text: str | None = None) -> None:
+def write(file: Path, values: Values, *, text: str | None = None, tell: bool = True) -> None:
     """Change these keys of the file and say so. Raises SettingsError; the file is then as it was.
 
-    text: what the file is taken to hold, if not what it does.
+    text: what the file is taken to hold, if not what it does. tell: which keys they are.
     """
     before = file.read_text(encoding="utf-8") if file.exists() else ""
     changed = with_keys(before if text is None else text, values)
@@ -76,7 +76,8 @@ def write(file: Path, values: Values, *, text: str | None = None) -> None:
     try:
         load_settings(Options(config=file))
     except SettingsError:
-        replace_file(file, before)
+        put_back(file, kept)
         raise
-    print(f"\n{lines_of(values)}\n")
+    if tell:
+        print(f"\n{lines_of(values)}\n")
     print(f"written into {file}" + (f"; as it was before: {kept}" if kept else ""))

@@ -18,7 +18,7 @@ from daemon.shapes import Drawing, Points, Stroke
 
 PX_PER_MM = 10.0
 LEAST_MM = 60.0
-_MOST_MM = 200.0
+_MOST_MM = 120.0
 _EVERY_MM = 4.0
 _FIRST_MM = 10.0
 """From the corner of the frame to the first mark of a row."""

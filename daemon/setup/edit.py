@@ -71,6 +71,14 @@ def replace_file(file: Path, text: str) -> Path | None:
     return kept
 
 
+def put_back(file: Path, kept: Path | None) -> None:
+    """The settings of before, as `replace_file` has kept them."""
+    if kept is None:
+        file.unlink()
+    else:
+        kept.replace(file)
+
+
 def _keep(file: Path) -> Path | None:
     if not file.exists():
         return None

@@ -138,7 +138,7 @@ def test_each_mark_is_reached_from_the_side_that_it_stands_for() -> None:
 
 
 def test_the_card_is_as_large_as_its_box_allows() -> None:
-    assert (card_in((64.0, 64.0)), card_in((180.0, 120.0))) == (CARD, Card(180.0, 120.0))
+    assert (card_in((64.0, 64.0)), card_in((180.0, 120.0))) == (CARD, Card(120.0, 120.0))
     with pytest.raises(SettingsError, match="60 x 60"):
         card_in((64.0, 59.9))
 
