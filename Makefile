@@ -13,15 +13,15 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constr
 PEERS := .venv-peers
 PEER_PINS := tests/benchmarks/fidelity/peers/requirements.txt
 PINS := pyproject.toml constraints.txt
-CODE := daemon firmware_protocol training tests
+CODE := daemon firmware_protocol training tests systemd/debian
 
 # onnxruntime reports home from its first import on unless this is set before it.
 export ORT_DISABLE_TELEMETRY := 1
 
-.PHONY: help demo test test-training test-system check format bench bench-fidelity faults fuzz torture soak generalisation peers clean
+.PHONY: help demo test test-training test-system check format bench bench-fidelity faults fuzz torture soak generalisation peers deb arm64-check clean
 
 help: ## What there is to make
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
+	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
 demo: $(VENV)/runtime ## Draw our own drawings on a simulated plotter; demo/contact_sheet.png shows them
 	@$(BIN)/python -m tests.demo demo
@@ -32,13 +32,14 @@ test: $(VENV)/test ## Every test that needs neither PyTorch nor a system package
 test-training: $(VENV)/test $(VENV)/training ## The tests that need PyTorch
 	$(BIN)/python -m pytest -m training
 
-test-system: $(VENV)/test ## The tests that need system packages or the senders of other people
+test-system: $(VENV)/test $(VENV)/deb ## The tests that need system packages or the senders of other people
 	$(BIN)/python -m pytest -m system
 
-check: $(VENV)/test $(VENV)/check ## Form, lint, types, import contracts and unit tests: the fast ones, while coding
+check: $(VENV)/test $(VENV)/check $(VENV)/deb ## Form, lint, types, import contracts and unit tests: the fast ones, while coding
 	$(BIN)/ruff format --check $(CODE)
 	$(BIN)/ruff check $(CODE)
 	$(BIN)/mypy
+	cd systemd/debian && $(CURDIR)/$(BIN)/mypy --strict .
 	$(BIN)/lint-imports
 	$(BIN)/python -m pytest tests/daemon tests/firmware_protocol
 
@@ -70,15 +71,24 @@ generalisation: $(VENV)/runtime $(PEERS)/made ## docs/generalisation.png: our ow
 
 peers: $(PEERS)/made ## Other people's tracers in .venv-peers, for bench-fidelity to compare with
 
+deb: $(VENV)/deb ## dist/linedrawd_VERSION_amd64.deb and _arm64.deb for Debian 12 and 13, in a quarter of an hour
+	@$(BIN)/python systemd/debian/build.py
+	@if command -v lintian >/dev/null; then lintian --fail-on error dist/linedrawd_*.deb; \
+		else echo 'lintian is not installed: what it finds is not known'; fi
+
+arm64-check: $(VENV)/deb ## The arm64 package in an emulated Debian draws what is drawn here; half an hour, needs root
+	@$(BIN)/python systemd/debian/build.py --quick --arch arm64 --python 3.11 --out build/arm64
+	@$(BIN)/python -m tests.system.arm64 build/arm64/linedrawd_*_arm64.deb
+
 clean: ## Remove what was made, also the environments and demo
-	rm -rf $(VENV) $(PEERS) demo fidelity fuzz build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(PEERS) demo fidelity fuzz build dist .debian *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find $(CODE) -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/runtime: $(PINS) | $(VENV)/made
 	$(PIP) --editable .
 	@touch $@
 
-$(VENV)/test $(VENV)/check $(VENV)/training $(VENV)/fuzz: $(VENV)/%: $(VENV)/runtime
+$(VENV)/test $(VENV)/check $(VENV)/training $(VENV)/fuzz $(VENV)/deb: $(VENV)/%: $(VENV)/runtime
 	$(PIP) --editable '.[$*]'
 	@touch $@
 
