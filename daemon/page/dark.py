@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import cv2
 import numpy as np
 
+from daemon.page.back import noted
 from daemon.page.tones import reduced
 from daemon.shapes import Grey, PageImage
 
@@ -28,7 +27,7 @@ def turn_dark(page: PageImage) -> PageImage:
         return page
     window_px = max(3, min(255, min(small.shape) // _WINDOW_SHARE)) | 1
     standing_out = small.astype(np.float64) - cv2.medianBlur(small, window_px)
-    return replace(page, grey=255 - page.grey) if (standing_out**3).sum() >= 0 else page
+    return noted(page, "light on dark turned", 255 - page.grey) if (standing_out**3).sum() >= 0 else page
 
 
 def _rim(small: Grey) -> Grey:

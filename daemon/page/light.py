@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import cv2
 import numpy as np
 
+from daemon.page.back import noted
 from daemon.page.tones import Tones, reduced, tones
 from daemon.shapes import Grey, PageImage
 
@@ -27,17 +27,33 @@ _GRAIN_BLUR_PX = 0.8
 def flatten_light(page: PageImage) -> PageImage:
     """White paper and black ink where the paper is toned or unevenly lit or the ink is faint; else the page itself.
 
+    A page whose paper is white and whose ink is dark, and a page without ink, come back bit by bit.
+    """
+    return spread_tones(even_light(page))
+
+
+def even_light(page: PageImage) -> PageImage:
+    """Paper of one tone where it is toned or unevenly lit, shadows on it too; else the page itself.
+
     The light on the paper is the page with its ink closed away (grey-level closing, Serra 1982), smoothed; the page
-    is divided by it, and the levels between ink and paper are spread over 0..255. Grain that is strong beside the ink
-    is smoothed. A page whose paper is white and whose ink is dark, and a page without ink, come back bit by bit.
+    is divided by it.
     """
     bare = _bare_paper(page.grey)
     if _even(bare):
-        found = tones(page.grey)
-        return page if found is None or found.full_ink <= _BLACK else replace(page, grey=_spread(page.grey, found))
+        return page
     flat = _divided(page.grey, bare)
-    found = tones(flat)
-    return page if found is None else replace(page, grey=_spread(flat, found))
+    return page if tones(flat) is None else noted(page, "light evened out", flat)
+
+
+def spread_tones(page: PageImage) -> PageImage:
+    """Ink and paper spread over 0..255 where the ink is faint or something was done to the page; else the page itself.
+
+    Grain that is strong beside the ink is smoothed.
+    """
+    found = tones(page.grey)
+    if found is None or (not page.steps and found.full_ink <= _BLACK):
+        return page
+    return noted(page, "ink and paper spread", _spread(page.grey, found))
 
 
 def _bare_paper(grey: Grey) -> Grey:

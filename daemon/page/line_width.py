@@ -12,7 +12,7 @@ from daemon.page.tones import Tones, tones
 from daemon.shapes import Grey, Homography, PageImage
 
 BEST_PX = 2.5
-NARROWEST_PX, WIDEST_PX = 1.8, 3.5
+NARROWEST_PX, WIDEST_PX = 1.8, 4.0
 MOST_SIDE_PX = 4096
 
 _CELL_PX = 32
@@ -60,7 +60,8 @@ def _cell_widths(grey: Grey, found: Tones, cell_px: int) -> tuple[float, float]:
     padded = np.pad(grey, 1, mode="constant", constant_values=255)
     cells = [_band(padded[top : top + cell_px + 1], found, cell_px) for top in range(0, len(padded) - 1, cell_px)]
     area, outline = np.concatenate(cells, axis=1)
-    held = outline > 0
+    # A cell may see the rim of its neighbour's ink and hold none.
+    held = (outline > 0) & (area > 0)
     return _usual(2 * area[held] / outline[held], outline[held])
 
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from daemon.page.dark import turn_dark
-from daemon.page.light import flatten_light
+from daemon.page.dirt import clean_paper
+from daemon.page.light import even_light, flatten_light, spread_tones
 from daemon.page.line_width import fit_line_width
+from daemon.page.ruling import take_off_ruling
+from daemon.page.sheet import straighten
 from daemon.shapes import PageImage
 
 
@@ -22,7 +25,7 @@ def put_right(page: PageImage) -> PageImage:
 
     `to_given` leads back to the given picture. A clean page comes back as it is, bit by bit.
     """
-    return even_out(page)
+    return clean_paper(spread_tones(take_off_ruling(even_light(turn_dark(straighten(page))))))
 
 
 def even_out(page: PageImage) -> PageImage:
