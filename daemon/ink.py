@@ -18,6 +18,9 @@ LEAST_CONTRAST = 24.0
 _NOISES = 5.0
 """Ink is also darker than paper by this many standard deviations of the paper's grain."""
 
+_INK, _TOLD = 1, 3
+_LOOK_PX = 1 << 20
+
 # The eight neighbours of a pixel, clockwise from north, as (dy, dx); neighbour i is bit i of a neighbourhood code.
 _AROUND = ((-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1))
 
@@ -58,13 +61,13 @@ def thin(mask: Mask) -> Mask:
     ink = np.pad(mask.view(np.uint8), 1)
     flat, codes = ink.reshape(-1), _codes(ink).reshape(-1)
     steps = [dy * ink.shape[1] + dx for dy, dx in _AROUND]
-    scratch = np.empty(flat.size, np.int32)
-    now = later = np.flatnonzero(flat & (codes != 255))
+    now = later = _rim(flat, codes)
     even = 0
     while now.size or later.size:
         removed = now[_REMOVABLE[even][codes[now]]]
-        changed = _once(_remove(removed, flat, codes, steps), scratch)
-        now, later = _once(np.concatenate([later[flat[later] != 0], changed]), scratch), changed
+        changed = _remove(removed, flat, codes, steps)
+        now, later = np.concatenate([later[flat[later] == _INK], changed]), changed
+        flat[changed] = _INK
         even = 1 - even
     return np.ascontiguousarray(ink[1:-1, 1:-1]).view(np.bool_)
 
@@ -97,25 +100,26 @@ def _codes(ink: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return np.asarray(cv2.filter2D(ink, cv2.CV_8U, weights, borderType=cv2.BORDER_CONSTANT), np.uint8)
 
 
+def _rim(flat: NDArray[np.uint8], codes: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """The places of the ink that does not lie in the midst of ink."""
+    starts = range(0, flat.size, _LOOK_PX)
+    parts = [np.flatnonzero(flat[s : s + _LOOK_PX] & (codes[s : s + _LOOK_PX] != 255)) + s for s in starts]
+    return np.concatenate([np.empty(0, np.intp), *parts])
+
+
 def _remove(
     pixels: NDArray[np.intp], flat: NDArray[np.uint8], codes: NDArray[np.uint8], steps: list[int]
 ) -> NDArray[np.intp]:
-    """Take pixels off the ink, tell their neighbours, and return the inked neighbours, some of them twice."""
+    """Take pixels off the ink, tell their neighbours, and return the inked neighbours, each once and marked as told."""
     flat[pixels] = 0
     told = []
     for bit, step in enumerate(steps):
         neighbours = pixels + step
         codes[neighbours] &= np.uint8(255 ^ (1 << (bit + 4) % 8))
-        told.append(neighbours[flat[neighbours] != 0])
+        fresh = neighbours[flat[neighbours] == _INK]
+        flat[fresh] = _TOLD
+        told.append(fresh)
     return np.concatenate(told)
-
-
-def _once(pixels: NDArray[np.intp], scratch: NDArray[np.int32]) -> NDArray[np.intp]:
-    """Each pixel once, without sorting: of equal ones the last to write its number stays."""
-    numbers = np.arange(pixels.size, dtype=np.int32)
-    scratch[pixels] = numbers
-    last: NDArray[np.bool_] = scratch[pixels] == numbers
-    return pixels[last]
 
 
 def _removable() -> NDArray[np.bool_]:

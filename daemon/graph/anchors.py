@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bands import Band, bands
 from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices, Skeleton, junctions, rings
 from daemon.shapes import Points
 
+_HALO_SHARE = 1.1
+"""Distances over pixels are up to a tenth too long."""
 _DISC_PX = 2.3
 """A vertex owns the centre line in the disc that the network paints for a corner."""
 
@@ -30,10 +34,10 @@ class Anchored:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Nearest:
-    """For each pixel of the page the nearest vertex and how far it is; the labels of a page without vertices are 0."""
+    """For each pixel of the page the nearest vertex and how far it is; 0 and a great distance where none is near."""
 
     vertex: NDArray[np.int32]
-    distance_px: NDArray[np.float32]
+    distance_px: NDArray[np.float16]
 
 
 def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, width_px: float) -> Anchored:
@@ -44,7 +48,7 @@ def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, wid
     crossing becomes two.
     """
     reach_px = max(3.0, 1.5 * width_px)
-    owner, distance = nearest_at(corners, skeleton.pixels, shape)
+    owner, distance = nearest_at(corners, skeleton.pixels, shape, within_px=reach_px)
     owners = np.where(distance <= max(_DISC_PX, 0.75 * width_px), owner, -1)
     _seize(skeleton, corners, owners, shape, reach_px)
     clusters = junctions(skeleton) + [np.array([end]) for end in np.flatnonzero(skeleton.degrees <= 1)]
@@ -56,29 +60,55 @@ def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, wid
     return _compact(vertices, owners, len(corners))
 
 
-def nearest(vertices: Points, shape: tuple[int, int]) -> Nearest:
-    """The nearest vertex of every pixel. vertices: (V, 2) in px. shape: (H, W) of the page."""
-    if not len(vertices):
-        return Nearest(np.zeros(shape, np.int32), np.full(shape, np.inf, np.float32))
-    seeds = np.ones(shape, np.uint8)
-    x, y = np.clip(np.rint(vertices).astype(int), 0, [shape[1] - 1, shape[0] - 1]).T
-    seeds[y, x] = 0
-    distance, labels = cv2.distanceTransformWithLabels(
-        seeds, cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    names = np.zeros(int(labels.max()) + 1, np.int32)
-    names[labels[y, x]] = np.arange(len(vertices))
-    return Nearest(names[labels], np.asarray(distance, np.float32))
+def nearest(vertices: Points, shape: tuple[int, int], *, within_px: float) -> Nearest:
+    """The nearest vertex of every pixel that has one within that. vertices: (V, 2) in px. shape: (H, W) of the page."""
+    found = Nearest(np.zeros(shape, np.int32), np.full(shape, np.inf, np.float16))
+    for band, vertex, distance in _fields(vertices, shape, within_px):
+        found.vertex[band.own], found.distance_px[band.own] = vertex, distance
+    return found
 
 
-def nearest_at(vertices: Points, pixels: Indices, shape: tuple[int, int]) -> tuple[Indices, Floats]:
-    """The nearest vertex of each pixel (N, 2) and the distance to it in px."""
-    field = nearest(vertices, shape)
-    x, y = pixels.T
-    owner = field.vertex[y, x].astype(np.intp)
+def nearest_at(
+    vertices: Points, pixels: Indices, shape: tuple[int, int], *, within_px: float
+) -> tuple[Indices, Floats]:
+    """The nearest vertex of each pixel (N, 2) and the distance to it in px, where one is within that; else any."""
+    owner = _chamfer_at(vertices, pixels, shape, within_px)[0]
     if not len(vertices):
         return owner, np.full(len(pixels), np.inf)
     return owner, np.hypot(*(pixels - vertices[owner]).T)
+
+
+def _chamfer_at(
+    vertices: Points, places: Indices, shape: tuple[int, int], within_px: float
+) -> tuple[Indices, NDArray[np.float32]]:
+    """The nearest vertex of each place (N, 2) and how far it is over the pixels between them."""
+    found, away = np.zeros(len(places), np.intp), np.full(len(places), np.inf, np.float32)
+    x, y = places.T
+    for band, vertex, distance in _fields(vertices, shape, within_px):
+        here = np.flatnonzero((y >= band.own.start) & (y < band.own.stop))
+        found[here] = vertex[y[here] - band.own.start, x[here]]
+        away[here] = distance[y[here] - band.own.start, x[here]]
+    return found, away
+
+
+def _fields(
+    vertices: Points, shape: tuple[int, int], within_px: float
+) -> Iterator[tuple[Band, NDArray[np.int32], NDArray[np.float32]]]:
+    """For the own rows of each band that has a vertex near by the nearest one of each pixel and how far it is."""
+    x, y = np.clip(np.rint(vertices).astype(int), 0, [shape[1] - 1, shape[0] - 1]).reshape(-1, 2).T
+    for band in bands(shape[0], halo_px=_HALO_SHARE * within_px + 1):
+        here = np.flatnonzero((y >= band.seen.start) & (y < band.seen.stop))
+        if not here.size:
+            continue
+        seeds = np.ones((band.seen.stop - band.seen.start, shape[1]), np.uint8)
+        down, across = y[here] - band.seen.start, x[here]
+        seeds[down, across] = 0
+        distance, labels = cv2.distanceTransformWithLabels(
+            seeds, cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+        names = np.zeros(int(labels.max()) + 1, np.int32)
+        names[labels[down, across]] = here
+        yield band, names[labels[band.own_of_seen]], np.asarray(distance[band.own_of_seen], np.float32)
 
 
 def _seize(skeleton: Skeleton, corners: Points, owners: Indices, shape: tuple[int, int], reach_px: float) -> None:
@@ -86,10 +116,9 @@ def _seize(skeleton: Skeleton, corners: Points, owners: Indices, shape: tuple[in
     idle = np.setdiff1d(np.arange(len(corners)), owners)
     if not idle.size or not len(owners):
         return
-    pixels = nearest(skeleton.pixels.astype(np.float64), shape)
-    x, y = np.rint(corners[idle]).astype(np.intp).T
-    pixel = pixels.vertex[y, x]
-    free = (pixels.distance_px[y, x] <= reach_px) & (owners[pixel] < 0)
+    places = np.rint(corners[idle]).astype(np.intp)
+    pixel, distance = _chamfer_at(skeleton.pixels.astype(np.float64), places, shape, reach_px)
+    free = (distance <= reach_px) & (owners[pixel] < 0)
     owners[pixel[free]] = idle[free]
 
 

@@ -47,9 +47,11 @@ def select(
     Stops early when no later round can change a decision: the rendering would stay, and so would its blobs.
     """
     tau = np.full(len(pairs), adaptation.tau0)
-    chosen = eta > tau
+    chosen, near_ink = eta > tau, grown(ink)
     for left in range(adaptation.rounds, 0, -1):
-        delta = _deltas(vertices, pairs, rendering(vertices, pairs[chosen], ink.shape, width_px=width_px), ink)
+        drawn = rendering(vertices, pairs[chosen], ink.shape, width_px=width_px)
+        superfluous, absent = blobs(drawn & ~near_ink), blobs(ink & ~grown(drawn))
+        delta = _deltas(vertices, pairs, superfluous, absent)
         if not (((eta > tau * (1 + adaptation.rate * delta) ** left) != chosen) & (delta != 0)).any():
             break
         tau = tau * (1 + adaptation.rate * delta)
@@ -62,26 +64,27 @@ def rendering(vertices: Points, edges: Indices, shape: tuple[int, ...], *, width
     canvas = np.zeros(shape, np.uint8)
     segments = np.rint(vertices[edges] * (1 << _SHIFT)).astype(np.int32)
     cv2.polylines(canvas, list(segments), False, 1, max(1, round(width_px)), cv2.LINE_8, _SHIFT)
-    return canvas > 0
+    return canvas.view(np.bool_)
 
 
 def blobs(difference: Mask) -> Points:
     """Bounding boxes of connected components, largest first, as (left, top, right, bottom), widened by a margin."""
-    stats = cv2.connectedComponentsWithStats(difference.astype(np.uint8), connectivity=8)[2][1:].astype(np.float64)
+    stats = cv2.connectedComponentsWithStats(difference.view(np.uint8), connectivity=8)[2][1:].astype(np.float64)
     stats = stats[stats[:, cv2.CC_STAT_AREA] >= _LEAST_AREA_PX]
     stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")][:_MOST_BOXES]
     corner = stats[:, :2]
     return np.concatenate([corner - _MARGIN_PX, corner + stats[:, 2:4] - 1 + _MARGIN_PX], axis=1)
 
 
-def _deltas(vertices: Points, pairs: Indices, drawn: Mask, ink: Mask) -> Floats:
+def grown(mask: Mask) -> Mask:
+    """The mask and the pixels around it."""
+    return np.asarray(cv2.dilate(mask.view(np.uint8), np.ones((3, 3), np.uint8)), np.uint8).view(np.bool_)
+
+
+def _deltas(vertices: Points, pairs: Indices, superfluous: Points, absent: Points) -> Floats:
     """delta of Eq. 3: -1 for pairs inside an absent blob's box, +1 inside a superfluous one's, else 0."""
-    cross = np.ones((3, 3), np.uint8)
-    near_drawn = cv2.dilate(drawn.astype(np.uint8), cross) > 0
-    near_ink = cv2.dilate(ink.astype(np.uint8), cross) > 0
-    superfluous = _inside(vertices, pairs, blobs(drawn & ~near_ink))
-    absent = _inside(vertices, pairs, blobs(ink & ~near_drawn))
-    return np.where(absent, -1.0, np.where(superfluous, 1.0, 0.0))
+    lacking, too_much = _inside(vertices, pairs, absent), _inside(vertices, pairs, superfluous)
+    return np.where(lacking, -1.0, np.where(too_much, 1.0, 0.0))
 
 
 def _inside(vertices: Points, pairs: Indices, boxes: Points) -> NDArray[np.bool_]:

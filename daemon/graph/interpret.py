@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from daemon.graph.anchors import anchored
 from daemon.graph.bends import sharpened
@@ -34,16 +35,26 @@ _ROUNDING_PX = 1e-3
 _LEAST_SPECK_PX = 3
 _ROUNDS = 4
 
+Floats32: TypeAlias = NDArray[np.float32]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ink:
-    """The ink of a page: its lines as a mask, its dots (D, 2) in px, all of it in shades, line width, and specks."""
+    """The ink of a page: its lines as a mask, its dots (D, 2) in px, line width and specks, and the page's greys.
+
+    levels: float32 (256,), how much of a pixel of each grey level is inked, 0..1.
+    """
 
     lines: Mask
     dots: Points
-    shades: Map
     width_px: float
     specks: int
+    grey: Grey
+    levels: Floats32
+
+    def shades(self) -> Map:
+        """How much of each pixel is inked: large, so nobody keeps it."""
+        return self.levels[self.grey]
 
 
 def interpret(
@@ -91,7 +102,7 @@ def _check(page: PageImage, segmentation: Segmentation) -> None:
 def _ink_of(page: PageImage) -> _Ink:
     """Ink without specks, dots taken out of it."""
     mask = ink_mask(page.grey)
-    _, labels, stats, centres = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    _, labels, stats, centres = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)
     areas = stats[:, cv2.CC_STAT_AREA]
     width_px = page.line_width_px or _width_px(mask)
     dirt = areas < _LEAST_SPECK_PX
@@ -99,7 +110,7 @@ def _ink_of(page: PageImage) -> _Ink:
     dots[0] = dirt[0] = False
     lines = mask & ~(dots | dirt)[labels]
     middles = np.asarray(centres[dots], np.float64).reshape(-1, 2)
-    return _Ink(lines, middles, _shades(page.grey, mask), width_px, int(dirt.sum()))
+    return _Ink(lines, middles, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask))
 
 
 def _width_px(mask: Mask) -> float:
@@ -109,12 +120,13 @@ def _width_px(mask: Mask) -> float:
     return float(max(1.0, mask.sum() / max(1.0, 1.1 * centre.sum())))
 
 
-def _shades(grey: Grey, mask: Mask) -> Map:
-    """How much of each pixel is inked, 0..1."""
+def _levels(grey: Grey, mask: Mask) -> Floats32:
+    """How much of a pixel of each grey level is inked, 0..1."""
     if not mask.any():
-        return np.zeros(grey.shape, np.float32)
+        return np.zeros(256, np.float32)
     paper, full = float(np.median(grey[~mask])) if not mask.all() else 255.0, float(np.percentile(grey[mask], 10))
-    return np.asarray(np.clip((paper - grey.astype(np.float32)) / max(1.0, paper - full), 0.0, 1.0), np.float32)
+    greys = np.arange(256, dtype=np.float32)
+    return np.asarray(np.clip((paper - greys) / max(1.0, paper - full), 0.0, 1.0), np.float32)
 
 
 def _by_the_paper(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> LineGraph:
@@ -169,19 +181,20 @@ def _on_ridge(
     polylines: list[Points], ends: Indices, vertices: Points, origins: Origins, ink: _Ink
 ) -> tuple[Lines, Origins]:
     """The edges in the middle of the ink, without what melted ink and false corners have put between them."""
-    lines = onto_ridge(polylines, ends, vertices, ink.shades, width_px=ink.width_px)
+    shades = ink.shades()
+    lines = onto_ridge(polylines, ends, vertices, shades, width_px=ink.width_px)
     for _ in range(_ROUNDS):
         fewer = hubs(lines, width_px=ink.width_px) or unmelted(lines, width_px=ink.width_px)
         if fewer is None:
             break
         origins = origins.without(fewer.kept, fewer.gone)
-        lines = onto_ridge(fewer.polylines, fewer.ends, fewer.vertices, ink.shades, width_px=ink.width_px)
-    fewer = unspurred(lines, ink.shades, width_px=ink.width_px)
+        lines = onto_ridge(fewer.polylines, fewer.ends, fewer.vertices, shades, width_px=ink.width_px)
+    fewer = unspurred(lines, shades, width_px=ink.width_px)
     if fewer is None:
         return lines, origins
     polylines, ends, members = joined(fewer.polylines, fewer.ends, fewer.vertices)
     origins = origins.without(fewer.kept, fewer.gone).joined(members)
-    return onto_ridge(polylines, ends, fewer.vertices, ink.shades, width_px=ink.width_px), origins
+    return onto_ridge(polylines, ends, fewer.vertices, shades, width_px=ink.width_px), origins
 
 
 def _filled(lines: Lines, ink: _Ink) -> Lines:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import cv2
 import numpy as np
@@ -14,8 +16,10 @@ from daemon.ink import Mask
 from daemon.shapes import Map, Points
 
 Floats = NDArray[np.float64]
+Number = TypeVar("Number", np.float64, np.bool_)
 _STAGES = (0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875)
-_PAIRS_AT_ONCE = 1 << 20
+_PAIRS_AT_ONCE = 1 << 17
+_SEGMENTS_AT_ONCE = 1 << 13
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,8 +52,8 @@ def sampled(starts: Points, ends: Points, *, trim_px: float = 0.0) -> Samples:
     return Samples(points, segment, first, np.stack([-unit[:, 1], unit[:, 0]], axis=1))
 
 
-def values_at(image: NDArray[np.float32], points: Points) -> Floats:
-    """The pixel of a float32 (H, W) image nearest to each point (N, 2); 0 outside it."""
+def values_at(image: NDArray[Any], points: Points) -> Floats:
+    """The pixel of a (H, W) image of any type nearest to each point (N, 2); 0 outside it."""
     x, y = np.rint(points).astype(np.intp).T
     height, width = image.shape
     inside = (x >= 0) & (y >= 0) & (x < width) & (y < height)
@@ -73,12 +77,27 @@ def plausibilities(lines: Map, starts: Points, ends: Points, *, width_px: float,
     length left out at both ends, where the corners channel takes over from the lines channel. Returns (P,) in 0..1;
     samples outside the page count as 0. The strip is sampled at three places across, a wide one about every px.
     """
-    samples = sampled(starts, ends, trim_px=trim_px)
     places = max(3, math.ceil(width_px))
     across = [width_px * (2 * place + 1 - places) / (2 * places) for place in range(places)]
-    normals = samples.normals[samples.segment]
-    strip = sum((values_at(lines, samples.points + offset * normals) for offset in across), np.zeros(len(normals)))
-    return mean_along(samples, strip / len(across))
+
+    def mean_of(starts: Points, ends: Points) -> Floats:
+        samples = sampled(starts, ends, trim_px=trim_px)
+        normals = samples.normals[samples.segment]
+        strip = sum((values_at(lines, samples.points + offset * normals) for offset in across), np.zeros(len(normals)))
+        return mean_along(samples, strip / len(across))
+
+    return in_parts(mean_of, starts, ends, np.float64)
+
+
+def in_parts(
+    what: Callable[[Points, Points], NDArray[Number]], starts: Points, ends: Points, kind: type[Number]
+) -> NDArray[Number]:
+    """What is true of each of many segments (P, 2), asked of some thousands of them at a time: samples are many."""
+    answers = np.empty(len(starts), kind)
+    for first in range(0, len(starts), _SEGMENTS_AT_ONCE):
+        part = slice(first, first + _SEGMENTS_AT_ONCE)
+        answers[part] = what(starts[part], ends[part])
+    return answers
 
 
 def pairs_on_ink(vertices: Points, ink: Mask, *, within_px: float = np.inf) -> Indices:
@@ -87,7 +106,7 @@ def pairs_on_ink(vertices: Points, ink: Mask, *, within_px: float = np.inf) -> I
     ink: bool (H, W). Vertices are compared with those in a strip of the page alone; each of the seven points rules out
     most of the pairs that the one before it left.
     """
-    wide = np.asarray(cv2.dilate(ink.astype(np.float32), np.ones((3, 3), np.uint8)), np.float32)
+    wide = np.asarray(cv2.dilate(ink.view(np.uint8), np.ones((3, 3), np.uint8)), np.uint8)
     order = np.argsort(vertices[:, 1], kind="stable")
     height = vertices[order, 1]
     past = np.searchsorted(height, height + within_px, side="right")
@@ -107,7 +126,7 @@ def pairs_on_ink(vertices: Points, ink: Mask, *, within_px: float = np.inf) -> I
     return np.sort(np.concatenate(found), axis=1)
 
 
-def _on_ink(p: Indices, q: Indices, vertices: Points, wide: Map, within_px: float) -> Indices:
+def _on_ink(p: Indices, q: Indices, vertices: Points, wide: NDArray[np.uint8], within_px: float) -> Indices:
     """Those of the pairs p-q that are near enough and have ink between them, (P, 2)."""
     kept = (p != q) & (np.abs(vertices[p, 0] - vertices[q, 0]) <= within_px)
     p, q = p[kept], q[kept]

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bands import bands
 from daemon.graph.anchors import anchored
 from daemon.graph.skeleton import Indices, chain_points, chains, thinned
 from daemon.ink import Mask
@@ -82,9 +83,12 @@ def uncovered(ink: Mask, polylines: Sequence[Points], *, width_px: float) -> Mas
     blank = np.ones(ink.shape, np.uint8)
     segments = [np.rint(polyline * (1 << _SHIFT)).astype(np.int32) for polyline in polylines]
     cv2.polylines(blank, segments, False, 0, 1, cv2.LINE_8, _SHIFT)
-    away = cv2.distanceTransform(blank, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    bare = ink & (away > width_px / 2 + _BESIDE_PX)
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(bare.astype(np.uint8), connectivity=8)
+    beside_px = width_px / 2 + _BESIDE_PX
+    bare = ink.copy()
+    for band in bands(len(ink), halo_px=beside_px + 1):
+        away = cv2.distanceTransform(blank[band.seen], cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        bare[band.own] &= away[band.own_of_seen] > beside_px
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(bare.view(np.uint8), connectivity=8)
     large = stats[:, 2:4].max(axis=1) > _LEAST_WIDTHS * width_px
     large[0] = False
     return np.asarray(large[labels])

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.graph.anchors import Nearest
-from daemon.graph.plausibility import Floats, Samples, mean_along, sampled, values_at
+from daemon.graph.plausibility import Floats, in_parts, mean_along, sampled, values_at
 from daemon.graph.skeleton import Indices
 from daemon.ink import Mask
 from daemon.shapes import Points
@@ -17,7 +17,7 @@ _GAP_PX = 2.0
 _GAP_SHARE = 0.06
 _EDGE_PX = 0.6
 _TWICE_SHARE = 0.8
-_THROUGH_PX, _NEAR_PX = 1.5, 3.0
+_THROUGH_PX, NEAR_PX = 1.5, 3.0
 _LOOKS = np.arange(1, 24) / 24
 
 
@@ -26,8 +26,11 @@ def without_gap(ink: Mask, starts: Points, ends: Points) -> NDArray[np.bool_]:
 
     ink: bool (H, W). starts, ends: (P, 2) in px. Half a pixel to the side still counts as under it.
     """
-    bare = 1.0 - _strip(ink, starts, ends, 0.5).max(axis=0)
-    return _little(bare, sampled(starts, ends), starts, ends)
+
+    def bridged(starts: Points, ends: Points) -> NDArray[np.bool_]:
+        return _little(1.0 - _strip(ink, starts, ends, 0.5).max(axis=0), starts, ends)
+
+    return in_parts(bridged, starts, ends, np.bool_)
 
 
 def filled(ink: Mask, starts: Points, ends: Points, *, width_px: float) -> NDArray[np.bool_]:
@@ -35,20 +38,26 @@ def filled(ink: Mask, starts: Points, ends: Points, *, width_px: float) -> NDArr
 
     width_px: of the line; its outer half pixel on either side is grey and does not count.
     """
-    bare = 1.0 - _strip(ink, starts, ends, max(0.0, width_px / 2 - _EDGE_PX)).min(axis=0)
-    return _little(bare, sampled(starts, ends), starts, ends)
+    aside_px = max(0.0, width_px / 2 - _EDGE_PX)
+
+    def full(starts: Points, ends: Points) -> NDArray[np.bool_]:
+        return _little(1.0 - _strip(ink, starts, ends, aside_px).min(axis=0), starts, ends)
+
+    return in_parts(full, starts, ends, np.bool_)
 
 
 def _strip(ink: Mask, starts: Points, ends: Points, aside_px: float) -> Floats:
     """Whether there is ink at each sample of each segment, left of it, on it and right of it: (3, S) of 0 and 1."""
-    samples, image = sampled(starts, ends), ink.astype(np.float32)
+    samples = sampled(starts, ends)
     aside = aside_px * samples.normals[samples.segment]
-    return np.stack([values_at(image, samples.points + side * aside) for side in (-1.0, 0.0, 1.0)])
+    return np.stack([values_at(ink, samples.points + side * aside) for side in (-1.0, 0.0, 1.0)])
 
 
-def _little(bare: Floats, samples: Samples, starts: Points, ends: Points) -> NDArray[np.bool_]:
+def _little(bare: Floats, starts: Points, ends: Points) -> NDArray[np.bool_]:
     lengths = np.hypot(*(ends - starts).T)
-    return np.asarray(mean_along(samples, bare) * (lengths + 1) <= np.maximum(_GAP_PX, _GAP_SHARE * lengths))
+    return np.asarray(
+        mean_along(sampled(starts, ends), bare) * (lengths + 1) <= np.maximum(_GAP_PX, _GAP_SHARE * lengths)
+    )
 
 
 def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -> NDArray[np.bool_]:
@@ -62,7 +71,7 @@ def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -
     x, y = np.rint(samples.points).astype(np.intp).T
     between = near.vertex[y, x].astype(np.intp)
     p, r = pairs[samples.segment].T
-    hit = (near.distance_px[y, x] <= _NEAR_PX) & (between != p) & (between != r)
+    hit = (near.distance_px[y, x] <= NEAR_PX) & (between != p) & (between != r)
     p, q, r, segment = p[hit], between[hit], r[hit], samples.segment[hit]
     ahead = _is_between(corners, p, q, r)
     keys = np.sort(known[:, 0] * len(corners) + known[:, 1])
@@ -105,7 +114,9 @@ def redundant(shape: tuple[int, ...], starts: Points, ends: Points, order: Indic
     segment, pixels = np.divmod(np.unique(samples.segment * area + np.stack([left, centre, right])), area)
     bounds = np.searchsorted(segment, np.arange(len(starts) + 1))
     last = np.append(samples.first[1:], len(centre))
-    cover = np.bincount(pixels, minlength=area)
+    covered, times = np.unique(pixels, return_counts=True)
+    cover = np.zeros(area, np.int32)
+    cover[covered] = times
     for index in order.tolist():
         if (cover[centre[samples.first[index] : last[index]]] >= 2).mean() >= _TWICE_SHARE:
             dropped[index] = True

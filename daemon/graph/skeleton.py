@@ -42,13 +42,24 @@ class Chain:
 def skeleton_of(mask: Mask) -> Skeleton:
     """The linked pixels of a centre line. mask: bool (H, W), already one pixel wide."""
     ys, xs = np.nonzero(mask)
-    padded = np.full((mask.shape[0] + 2, mask.shape[1] + 2), -1, np.intp)
-    padded[ys + 1, xs + 1] = np.arange(len(xs))
-    links = np.stack([padded[ys + 1 + dy, xs + 1 + dx] for dx, dy in _AROUND], axis=1)
+    links = _touching(ys * (mask.shape[1] + 2) + xs, mask.shape[1] + 2)
     for diagonal in (1, 3, 5, 7):
         bridged = (links[:, diagonal - 1] >= 0) | (links[:, (diagonal + 1) % 8] >= 0)
         links[bridged, diagonal] = -1
     return Skeleton(np.stack([xs, ys], axis=1), links, (links >= 0).sum(axis=1))
+
+
+def _touching(places: Indices, stride: int) -> Indices:
+    """For each pixel the indices of its eight neighbours as in _AROUND, -1 for none. places: y * stride + x, sorted."""
+    links = np.full((len(places), len(_AROUND)), -1, np.intp)
+    for dy in (-1, 0, 1):
+        at = np.searchsorted(places, places + dy * stride - 1)
+        for dx in (-1, 0, 1):
+            hit = places[np.minimum(at, len(places) - 1)] == places + dy * stride + dx if len(places) else at > 0
+            if dx or dy:
+                links[hit, _AROUND.index((dx, dy))] = at[hit]
+            at += hit
+    return links
 
 
 def thinned(ink: Mask, *, shortest_spur_px: float) -> Skeleton:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from daemon.graph.anchors import Anchored, Nearest, nearest
 from daemon.graph.feedback import Adaptation, select
 from daemon.graph.plausibility import Floats, pairs_on_ink, plausibilities
-from daemon.graph.repairs import TRIM_PX, clear_of_corners, filled, redundant, suppressed, without_gap
+from daemon.graph.repairs import NEAR_PX, TRIM_PX, clear_of_corners, filled, redundant, suppressed, without_gap
 from daemon.graph.skeleton import Chain, Indices, Skeleton
 from daemon.graph.verdicts import BEND, FILL, GAP, KEPT, PLAUSIBILITY, PRUNE, SUPPRESSION, THRESHOLD, Judged
 from daemon.ink import Mask
@@ -52,17 +52,20 @@ def straight_edges(
     other edges cover it.
     """
     vertices = anchored.vertices[: anchored.corners]
-    near = nearest(vertices, (ink.shape[0], ink.shape[1]))
+    near = nearest(vertices, (ink.shape[0], ink.shape[1]), within_px=NEAR_PX)
     pairs, bends = _candidates(anchored, skeleton, chains, ink, near)
     rules = _by_ink(vertices, pairs, bends, ink, width_px)
     eta = np.full(len(pairs), np.nan)
     looked_at = (rules == KEPT) | (bends >= 0)
-    response, ends = segmentation.lines + segmentation.corners, _ends(vertices, pairs[looked_at])
-    eta[looked_at] = plausibilities(response, *ends, width_px=adaptation.beta_px, trim_px=TRIM_PX)
+    ends = _ends(vertices, pairs[looked_at])
+    eta[looked_at] = plausibilities(
+        segmentation.lines + segmentation.corners, *ends, width_px=adaptation.beta_px, trim_px=TRIM_PX
+    )
     rules[(rules == KEPT) & ~(eta > adaptation.tau0 * (1 - adaptation.rate) ** adaptation.rounds)] = PLAUSIBILITY
     left = np.flatnonzero(rules == KEPT)
     known = pairs[looked_at & ((eta > adaptation.tau0) | (bends >= 0))]
     rules[left[suppressed(vertices, pairs[left], known, near)]] = SUPPRESSION
+    del near
     left = np.flatnonzero(rules == KEPT)
     rules[left[~select(vertices, pairs[left], eta[left], ink, adaptation, width_px=width_px)]] = THRESHOLD
     left = np.flatnonzero(rules == KEPT)

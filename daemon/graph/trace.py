@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bands import bands
 from daemon.graph.skeleton import Chain, Indices, Skeleton
 from daemon.graph.verdicts import Rule
 from daemon.shapes import Points
@@ -36,7 +37,7 @@ def unexplained(
     *covered*), and so is a chain that touches itself at its vertex within the ink's own width (*loop*). Chains without
     pixels, between vertices that touch, are kept when they are needed to connect the two (*short*).
     """
-    near = _distance_to(straight, vertices, shape) <= _COVERED_PX
+    near = _near(straight, vertices, shape)
     drawn = {(min(pair), max(pair)) for pair in straight.tolist()}
     rules: dict[int, Rule] = {id(c): _first_rule(c, skeleton, vertices, near, width_px) for c in chains}
     lines = [chain for chain in chains if rules[id(chain)] == "traced"]
@@ -184,12 +185,16 @@ def _groups(count: int, pairs: Iterable[tuple[int, int]]) -> tuple[Callable[[int
     return root, join
 
 
-def _distance_to(edges: Indices, vertices: Points, shape: tuple[int, int]) -> NDArray[np.float32]:
-    """Distance of every pixel to the nearest straight edge, in px."""
-    blank = np.ones(shape, np.uint8)
+def _near(edges: Indices, vertices: Points, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Which pixels straight edges draw."""
+    near = np.ones(shape, np.uint8)
     segments = np.rint(vertices[edges] * (1 << _SHIFT)).astype(np.int32)
-    cv2.polylines(blank, list(segments), False, 0, 1, cv2.LINE_8, _SHIFT)
-    return np.asarray(cv2.distanceTransform(blank, cv2.DIST_L2, cv2.DIST_MASK_5), np.float32)
+    cv2.polylines(near, list(segments), False, 0, 1, cv2.LINE_8, _SHIFT)
+    blank = near.copy()
+    for band in bands(shape[0], halo_px=2 * _COVERED_PX):
+        away = cv2.distanceTransform(blank[band.seen], cv2.DIST_L2, cv2.DIST_MASK_5)
+        near[band.own] = away[band.own_of_seen] <= _COVERED_PX
+    return near.view(np.bool_)
 
 
 def _longest_run(flags: NDArray[np.bool_]) -> int:

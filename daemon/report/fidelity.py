@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bands import bands
 from daemon.ink import Mask, ink_mask, thin
 from daemon.report.places import Place, places
 from daemon.shapes import Grey, PageImage, Points
 
 RECALL_WITHIN_PX = 1.5
-_BAND_PX, _HALO_PX = 512, 128
+_HALO_PX = 128
+_SAMPLED_PX, _STROKES_AT_ONCE = 50_000, 5_000
+"""So much line is looked at together."""
 _BESIDE = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 """One pixel beside a mask still belongs to it."""
 
@@ -48,13 +51,15 @@ def fidelity(page: PageImage, strokes: Sequence[Points], *, line_width_px: float
     if not line_width_px > 0:
         raise ValueError(f"line width {line_width_px} px: it must be positive")
     ink = ink_mask(page.grey)
-    precision = _precision(ink, strokes, line_width_px)
     recall = _recall(ink, strokes, max(RECALL_WITHIN_PX, line_width_px / 2))
+    grown_ink = _grown(ink)
+    precision = _precision(ink, grown_ink, strokes, line_width_px)
     f1 = 2 * precision * recall / (precision + recall) if precision + recall else 0.0
     drawn = within(strokes, ink.shape, line_width_px / 2)
-    not_drawn = places(ink & ~_grown(drawn), longer_than_px=2 * line_width_px)
-    not_on_ink = places(drawn & ~_grown(ink), longer_than_px=2 * line_width_px)
-    return Fidelity(precision, recall, f1, _overlap(ink, drawn), not_drawn, not_on_ink)
+    overlap = _overlap(ink, drawn)
+    not_on_ink = places(_without(drawn, grown_ink), longer_than_px=2 * line_width_px)
+    not_drawn = places(_without(ink, _grown(drawn)), longer_than_px=2 * line_width_px)
+    return Fidelity(precision, recall, f1, overlap, not_drawn, not_on_ink)
 
 
 def line_width_px(grey: Grey) -> float:
@@ -76,12 +81,11 @@ def _to_paper_px(ink: Mask, centre: Mask) -> NDArray[np.float32]:
 
     In ink that is wider than two halos a distance may come out greater than it is, but not below a halo.
     """
-    framed, found = np.pad(ink.view(np.uint8), 1), []
-    for top in range(0, len(ink), _BAND_PX):
-        first, rows = max(0, top - _HALO_PX), centre[top : top + _BAND_PX]
-        band = framed[first : top + _BAND_PX + _HALO_PX + 2]
-        distance = cv2.distanceTransform(band, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        found.append(distance[top + 1 - first : top + 1 - first + len(rows), 1:-1][rows])
+    found = []
+    for band in bands(len(ink), halo_px=_HALO_PX):
+        framed = np.pad(ink[band.seen].view(np.uint8), 1)
+        distance = cv2.distanceTransform(framed, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
+        found.append(distance[band.own_of_seen][centre[band.own]])
     return np.concatenate(found)
 
 
@@ -92,29 +96,31 @@ def within(strokes: Sequence[Points], shape: tuple[int, ...], radius_px: float) 
     """
     height, width = shape
     near = np.zeros((height, width), bool)
-    points = _samples(strokes, min(0.5, radius_px / 3) if radius_px < 4 else radius_px / 6)[0]
-    pixels = np.rint(points).astype(np.intp)
-    off = points - pixels
     reach = int(radius_px + 0.5)
-    for dy in range(-reach, reach + 1):
-        for dx in range(-reach, reach + 1):
-            hit = (off[:, 0] - dx) ** 2 + (off[:, 1] - dy) ** 2 <= radius_px**2
-            x, y = pixels[hit, 0] + dx, pixels[hit, 1] + dy
-            on = (x >= 0) & (x < width) & (y >= 0) & (y < height)
-            near[y[on], x[on]] = True
+    for points, _ in _samples(strokes, min(0.5, radius_px / 3) if radius_px < 4 else radius_px / 6):
+        pixels = np.rint(points).astype(np.intp)
+        off = points - pixels
+        for dy in range(-reach, reach + 1):
+            for dx in range(-reach, reach + 1):
+                hit = (off[:, 0] - dx) ** 2 + (off[:, 1] - dy) ** 2 <= radius_px**2
+                x, y = pixels[hit, 0] + dx, pixels[hit, 1] + dy
+                on = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+                near[y[on], x[on]] = True
     return near
 
 
-def _precision(ink: Mask, strokes: Sequence[Points], dot_px: float) -> float:
-    points, lengths = _samples(strokes, 0.5, dot_px=dot_px)
-    total = float(lengths.sum())
+def _precision(ink: Mask, grown: Mask, strokes: Sequence[Points], dot_px: float) -> float:
+    """grown: the ink and what lies beside it."""
+    total = hit = 0.0
+    for points, lengths in _samples(strokes, 0.5, dot_px=dot_px):
+        x, y = np.rint(points).astype(np.intp).T
+        on = (x >= 0) & (x < ink.shape[1]) & (y >= 0) & (y < ink.shape[0])
+        on[on] = grown[y[on], x[on]]
+        total += float(lengths.sum())
+        hit += float(lengths[on].sum())
     if not total:
         return 0.0 if ink.any() else 1.0
-    near = _grown(ink)
-    x, y = np.rint(points).astype(np.intp).T
-    on = (x >= 0) & (x < ink.shape[1]) & (y >= 0) & (y < ink.shape[0])
-    on[on] = near[y[on], x[on]]
-    return float(lengths[on].sum()) / total
+    return hit / total
 
 
 def _recall(ink: Mask, strokes: Sequence[Points], tolerance_px: float) -> float:
@@ -125,16 +131,38 @@ def _recall(ink: Mask, strokes: Sequence[Points], tolerance_px: float) -> float:
 
 
 def _overlap(ink: Mask, drawn: Mask) -> float:
-    union = float((ink | drawn).sum())
-    return float((ink & drawn).sum()) / union if union else 1.0
+    common = np.count_nonzero(ink & drawn)
+    union = np.count_nonzero(ink) + np.count_nonzero(drawn) - common
+    return common / union if union else 1.0
+
+
+def _without(mask: Mask, other: Mask) -> Mask:
+    return np.asarray(np.greater(mask, other))
 
 
 def _grown(mask: Mask) -> Mask:
     return np.asarray(cv2.dilate(mask.view(np.uint8), _BESIDE), np.uint8).view(np.bool_)
 
 
-def _samples(strokes: Sequence[Points], step_px: float, *, dot_px: float = 0.0) -> tuple[Points, NDArray[np.float64]]:
-    """Points along all strokes, at most `step_px` apart, (S, 2), and the length that each stands for, (S,)."""
+def _samples(
+    strokes: Sequence[Points], step_px: float, *, dot_px: float = 0.0
+) -> Iterator[tuple[Points, NDArray[np.float64]]]:
+    """Points along the strokes, at most `step_px` apart, (S, 2), and the length that each stands for, (S,).
+
+    Some strokes at a time: the points of a whole sheet are large.
+    """
+    some: list[Points] = []
+    length_px = 0.0
+    for stroke in strokes:
+        some.append(stroke)
+        length_px += float(np.hypot(*np.diff(stroke, axis=0).T).sum())
+        if length_px > _SAMPLED_PX or len(some) == _STROKES_AT_ONCE:
+            yield _samples_of(some, step_px, dot_px)
+            some, length_px = [], 0.0
+    yield _samples_of(some, step_px, dot_px)
+
+
+def _samples_of(strokes: Sequence[Points], step_px: float, dot_px: float) -> tuple[Points, NDArray[np.float64]]:
     segments = [np.hstack([s[:-1], s[1:]]) if len(s) > 1 else np.hstack([s, s]) for s in strokes]
     ends = np.concatenate([np.empty((0, 4)), *segments])
     lengths = np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1])
@@ -151,8 +179,13 @@ def _samples(strokes: Sequence[Points], step_px: float, *, dot_px: float = 0.0) 
 
 def _length(centre: Mask) -> float:
     """Length in px of a line one pixel wide: steps to the side count 1, diagonal ones that cut no corner sqrt(2)."""
-    c = np.pad(centre, 1)
-    straight = (c[:, 1:] & c[:, :-1]).sum() + (c[1:] & c[:-1]).sum()
-    down = c[1:, 1:] & c[:-1, :-1] & ~c[1:, :-1] & ~c[:-1, 1:]
-    up = c[:-1, 1:] & c[1:, :-1] & ~c[1:, 1:] & ~c[:-1, :-1]
-    return max(1.0, float(straight + np.sqrt(2) * (down.sum() + up.sum())))
+    straight = diagonal = 0
+    # Each band once, with the row below it.
+    for band in bands(len(centre)):
+        c = np.pad(centre[band.own.start : band.own.stop + 1], ((0, 0), (1, 1)))
+        here = c[: band.own.stop - band.own.start]
+        straight += int((here[:, 1:] & here[:, :-1]).sum() + (c[1:] & c[:-1]).sum())
+        down = c[1:, 1:] & c[:-1, :-1] & ~c[1:, :-1] & ~c[:-1, 1:]
+        up = c[:-1, 1:] & c[1:, :-1] & ~c[1:, 1:] & ~c[:-1, :-1]
+        diagonal += int(down.sum() + up.sum())
+    return max(1.0, float(straight + np.sqrt(2) * diagonal))

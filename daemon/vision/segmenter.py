@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -30,7 +31,8 @@ MARGIN_PX = 16
 """How far from its border a window's answer is not to be trusted."""
 WHOLE_PX = 285
 """Pages up to this side are read whole."""
-BATCH = 4
+_HALVED_PX = 1 << 22
+"""Of pages with more pixels than this the maps are kept to three digits, in half the memory."""
 _BLANK = 64
 """Of 255: a pixel must be this much darker than white, or it is blank paper."""
 
@@ -74,7 +76,7 @@ class Segmenter:
         self._session = open_model(checked_file(self._manifest), threads=threads)
 
     def segment(self, page: PageImage) -> Segmentation:
-        """Three maps of the page's shape, float32 in 0..1, that sum to 1 everywhere."""
+        """Three maps of the page's shape in 0..1 that sum to 1; float32, of pages above 4 megapixels float16."""
         return through_windows(page, self._manifest, lambda ink, last: softmax(self.logits(ink, last=last)))
 
     def logits(self, ink: NDArray[np.float32], *, last: bool = True) -> NDArray[np.float32]:
@@ -95,15 +97,13 @@ def through_windows(
     """A page read window by window. shares_of: ink (N, S, S) and whether it is the page's last, to (N, 3, S, S)."""
     height, width = page.grey.shape
     grey = soft_edged(page.grey)
-    maps = np.zeros((3, height, width), np.float32)
+    maps = np.zeros((3, height, width), np.float16 if grey.size > _HALVED_PX else np.float32)
     maps[0] = 1.0
     size_px = manifest.window_px(max(width, height))
     inked = list(tiles(grey < 255 - _BLANK, size_px=size_px, margin_px=MARGIN_PX))
-    for first in range(0, len(inked), BATCH):
-        batch = inked[first : first + BATCH]
-        shares = shares_of(np.stack([cut(grey, t, size_px) for t in batch]), first + BATCH >= len(inked))
-        for tile, share in zip(batch, shares, strict=True):
-            paste(maps, tile, share)
+    # One at a time: several at once take several times the memory of the layers and no less time.
+    for number, tile in enumerate(inked, start=1):
+        paste(maps, tile, shares_of(cut(grey, tile, size_px)[None], number == len(inked))[0])
     return Segmentation(*maps)
 
 
@@ -148,7 +148,7 @@ def cut(grey: Grey, tile: Tile, size_px: int) -> Map:
     return out
 
 
-def paste(maps: NDArray[np.float32], tile: Tile, answer: NDArray[np.float32]) -> None:
+def paste(maps: NDArray[np.floating[Any]], tile: Tile, answer: NDArray[np.float32]) -> None:
     rows = slice(tile.core_top - tile.top, tile.core_bottom - tile.top)
     columns = slice(tile.core_left - tile.left, tile.core_right - tile.left)
     maps[:, tile.core_top : tile.core_bottom, tile.core_left : tile.core_right] = answer[:, rows, columns]

@@ -38,14 +38,14 @@ def test_an_edge_along_the_border_of_a_line_is_not_filled(y: float, kept: bool) 
 )
 def test_an_edge_does_not_pass_by_a_corner(between: tuple[float, float], known: list[list[int]], refused: bool) -> None:
     corners = points((5, 10), between, (54, 10))
-    near = nearest(corners, (20, 60))
+    near = nearest(corners, (20, 60), within_px=3.0)
     pairs, joined = np.array([[0, 2]]), np.array(known, np.intp).reshape(-1, 2)
     assert suppressed(corners, pairs, joined, near).tolist() == [refused]
 
 
 def test_what_the_quick_look_refuses_suppression_refuses_too() -> None:
     corners = np.random.default_rng(1).uniform(0, 99, (60, 2))
-    near, pairs = nearest(corners, (100, 100)), np.argwhere(np.triu(np.ones((60, 60), bool), 1))
+    near, pairs = nearest(corners, (100, 100), within_px=3.0), np.argwhere(np.triu(np.ones((60, 60), bool), 1))
     none_known = np.empty((0, 2), np.intp)
     refused = ~clear_of_corners(corners, pairs, near)
     assert refused.sum() > 100
@@ -57,7 +57,10 @@ def test_on_a_page_full_of_ink_few_pairs_are_clear_of_corners() -> None:
     clear = []
     for count in (200, 800):
         corners = np.random.default_rng(count).uniform(0, 199, (count, 2))
-        near, pairs = nearest(corners, (200, 200)), np.argwhere(np.triu(np.ones((count, count), bool), 1))
+        near, pairs = (
+            nearest(corners, (200, 200), within_px=3.0),
+            np.argwhere(np.triu(np.ones((count, count), bool), 1)),
+        )
         clear.append(clear_of_corners(corners, pairs, near).sum() / count)
     assert clear[1] < 0.5 * clear[0] < 25
 
