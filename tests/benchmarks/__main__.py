@@ -1,4 +1,4 @@
-"""Every benchmark, one after the other: `python -m tests.benchmarks [stages] [streaming] [done] [memory]`."""
+"""Every benchmark, one after the other: `python -m tests.benchmarks [stages] [arcs] [streaming] [done] [memory]`."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "ORT_DISABLE
 
 
 def main() -> None:
-    from tests.benchmarks import dobot, done, memory, stages, streaming  # noqa: PLC0415
+    from tests.benchmarks import arcs, dobot, done, memory, stages, streaming  # noqa: PLC0415
 
     known = {
         "stages": stages.show,
+        "arcs": arcs.show,
         "streaming": streaming.show,
         "dobot": dobot.show,
         "done": done.show,
