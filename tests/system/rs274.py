@@ -14,6 +14,7 @@ PACKAGE = "linuxcnc-uspace"
 _NEEDED = re.compile(r"Depends: (libboost-python[\d.]+|libpython3\.\d+|libedit2|libtirpc3\S*)$", re.MULTILINE)
 _READER = ("./usr/bin/rs274", "./usr/lib/lib*.so*")
 _MOVE = re.compile(r"STRAIGHT_(TRAVERSE|FEED)\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+),")
+_ARC = re.compile(r"ARC_FEED\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+), (-?[\d.]+), (-?\d+), (-?[\d.]+),")
 _VARIABLES = (*range(5161, 5170), *range(5181, 5190), *range(5211, 5220), 5220, *range(5221, 5231))
 
 Kind: TypeAlias = Literal["TRAVERSE", "FEED"]
@@ -21,12 +22,14 @@ Kind: TypeAlias = Literal["TRAVERSE", "FEED"]
 
 @dataclass(frozen=True, slots=True)
 class Canonical:
-    """One canonical move: where it ends, in mm."""
+    """One canonical move: where it ends, in mm, and for an arc about which centre it turns, turns > 0 to the left."""
 
     kind: Kind
     x: float
     y: float
     z: float
+    centre: tuple[float, float] | None = None
+    turns: int = 0
 
 
 class Rs274:
@@ -42,7 +45,7 @@ class Rs274:
         (self._work / "tool.tbl").write_text("")
 
     def read(self, text: str) -> list[Canonical]:
-        """The straight moves of a program. Raises AssertionError with LinuxCNC's words when it complains."""
+        """The moves of a program. Raises AssertionError with LinuxCNC's words when it complains."""
         return list(_moves(self.said(text)))
 
     def said(self, text: str) -> str:
@@ -60,8 +63,13 @@ class Rs274:
 
 
 def _moves(said: str) -> Iterator[Canonical]:
-    for kind, x, y, z in _MOVE.findall(said):
-        yield Canonical(kind, float(x), float(y), float(z))
+    for line in said.splitlines():
+        if (straight := _MOVE.search(line)) is not None:
+            kind, *end = straight.groups()
+            yield Canonical("FEED" if kind == "FEED" else "TRAVERSE", *map(float, end))
+        elif (arc := _ARC.search(line)) is not None:
+            x, y, centre_x, centre_y, turns, z = map(float, arc.groups())
+            yield Canonical("FEED", x, y, z, (centre_x, centre_y), int(turns))
 
 
 def _unpack(folder: Path, root: Path) -> None:

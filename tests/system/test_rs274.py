@@ -17,11 +17,10 @@ from daemon.page.prepare import prepare
 from daemon.program.emco import write_emco
 from daemon.program.gcode import ServoPen, ZPen, write_gcode
 from daemon.program.paper import write_paper
-from daemon.shapes import Program, Toolpath
+from daemon.shapes import Arc, Program, Toolpath
 from daemon.toolpath.place import Layout
-from daemon.toolpath.plan import plan_toolpath
+from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
-from firmware_protocol.emco.blocks import arc
 from tests.drawings.make import SHEETS, Sheet
 from tests.system.rs274 import Canonical, Rs274
 
@@ -56,12 +55,13 @@ def segmenter() -> Segmenter:
     return Segmenter(threads=1)
 
 
-def planned(file: str, segmenter: Segmenter) -> Toolpath:
+def planned(file: str, segmenter: Segmenter, *, curve_mm: float = 0.0) -> Toolpath:
     """The toolpath of one of our own drawings, through every room."""
     page = prepare(decode(DRAWINGS / file))
     height_px, width_px = page.grey.shape
     drawing = strokes(interpret(page, segmenter.segment(page)), width_px=width_px, height_px=height_px)
-    return plan_toolpath(drawing, layout=Layout((64.0, 64.0), (25.0, 25.0)), park_mm=(10.0, 80.0))
+    layout, precision = Layout((64.0, 64.0), (25.0, 25.0)), Precision(curve_mm=curve_mm)
+    return plan_toolpath(drawing, layout=layout, precision=precision, park_mm=(10.0, 80.0))
 
 
 def as_linuxcnc_reads_it(program: Program, kind: str) -> str:
@@ -125,13 +125,20 @@ def check_pen(moves: list[Canonical], kind: str) -> None:
             assert (before.z, move.z) == ((down_mm,) * 2 if move.kind == "FEED" else (up_mm,) * 2), kind
 
 
-@pytest.mark.parametrize("clockwise", [True, False])
-def test_an_arc_is_read_as_it_is_meant(clockwise: bool, rs274: Rs274) -> None:
-    """No toolpath holds arcs yet; the block that one would become goes round the right centre the right way."""
-    block = arc((35.0, 27.5), (5.0, 2.5), clockwise=clockwise)
-    said = rs274.said(f"%\nO0001\nG90 G17 G21\nG1 X25.0 Y22.5 F600.0\n{block}\nM30\n%\n")
-    turns = "-1" if clockwise else "1"
-    assert f"ARC_FEED(35.0000, 27.5000, 30.0000, 25.0000, {turns}," in said
+@pytest.mark.parametrize("kind", ["siemens", "fanuc", "grbl"])
+@pytest.mark.parametrize("file", ["spiral.png", "flower.png", "script.png"])
+def test_every_arc_is_read_as_it_is_meant(file: str, kind: str, rs274: Rs274, segmenter: Segmenter) -> None:
+    """Its end, its centre and the way round; LinuxCNC complains about an end off its circle."""
+    toolpath = planned(file, segmenter, curve_mm=0.05)
+    moves = [move for stroke in toolpath.strokes for move in stroke.moves or ()]
+    read = rs274.read(as_linuxcnc_reads_it(PROGRAMS[kind](toolpath), kind))
+    check_pen(read, kind)
+    arcs, found = [move for move in moves if isinstance(move, Arc)], [move for move in read if move.centre]
+    assert len(arcs) > 30
+    assert [(-1 if arc.clockwise else 1) for arc in arcs] == [move.turns for move in found]
+    places = [(move.x, move.y, *(move.centre or ())) for move in found]
+    off_mm = np.abs(np.array(places) - [(*arc.end, *arc.centre) for arc in arcs])
+    assert off_mm.max() <= 2 * MICROMETRE
 
 
 def test_a_program_that_is_wrong_is_complained_about(rs274: Rs274) -> None:
