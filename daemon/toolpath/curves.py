@@ -30,7 +30,7 @@ def fitted(stroke: Stroke, *, error_mm: float, shortest_mm: float = 0.0, room: R
     no place of the moves further from the trace. shortest_mm: points of the trace nearer to the one before are left
     out, the last one not; the moves are then off by so much more. room: no arc bulges out of it where the trace is
     inside. Begins and ends where the trace does and turns on the tips of its corners; its joints lie on the trace, so
-    where it is smooth the moves meet within a few degrees. Each move goes as far as the error lets it. For each end it
+    where it is smooth the moves meet almost smoothly. Each move goes as far as the error lets it. For each end it
     is known which arcs from here to there are near enough to every sample between: a range of curvatures, empty when
     there is none. One arc between two joints needs fewer moves than the two of a biarc for the same error. A closed
     trace all within error_mm of its first point becomes that point.

@@ -99,7 +99,7 @@ def test_every_place_of_a_move_is_found_on_it(
 
 def test_a_flat_arc_is_watched_as_closely_as_a_line_and_one_off_its_circle_less() -> None:
     flat, off = path("G0 X0 Y0", "G2 X100 Y0 I50 J-500"), path("G0 X0 Y0", "G2 X100.3 Y0 I50 J-500")
-    (x, y, z), beside = flat.steps[1].move.at(0.5) if flat.steps[1].move else START.at or (0, 0, 0), 0.04
-    assert flat.spots((x, y, z), 1, 2, within_mm=0.03)
-    assert flat.spots((x, y + beside, z), 1, 2, within_mm=0.03) == []
-    assert off.spots((x, y + beside, z), 1, 2, within_mm=0.03)
+    top_mm = math.hypot(50, 500) - 500
+    assert flat.spots((50.0, top_mm, 5.0), 1, 2, within_mm=0.03)
+    assert flat.spots((50.0, top_mm + 0.04, 5.0), 1, 2, within_mm=0.03) == []
+    assert off.spots((50.0, top_mm + 0.04, 5.0), 1, 2, within_mm=0.03)
