@@ -29,10 +29,10 @@ Homography: TypeAlias = "NDArray[np.float64]"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
-    """Something that was done to a page, in a few words, and the page after it, small enough to be kept."""
+    """Something that was done to a page, in a few words, and the page before it, small enough to be kept."""
 
     words: str
-    small: Grey
+    before: Grey
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,7 +9,7 @@ import numpy as np
 from daemon.page.tones import reduced
 from daemon.shapes import Grey, Homography, PageImage, Points, Step
 
-_SMALL_PX = 720
+_SMALL_PX = 480
 
 
 def on_given(points: Points, to_given: Homography) -> Points:
@@ -31,4 +31,4 @@ def given_px(page: PageImage) -> float:
 def noted(page: PageImage, words: str, grey: Grey, to_given: Homography | None = None) -> PageImage:
     """The page after a step: its new pixels, where they lie if they have moved, and what was done in a few words."""
     moved = page.to_given if to_given is None else to_given
-    return replace(page, grey=grey, to_given=moved, steps=(*page.steps, Step(words, reduced(grey, _SMALL_PX))))
+    return replace(page, grey=grey, to_given=moved, steps=(*page.steps, Step(words, reduced(page.grey, _SMALL_PX))))

@@ -12,6 +12,7 @@ from daemon.ink import Mask, ink_mask, thin
 from daemon.report import canvas
 from daemon.report.canvas import Colour, Picture
 from daemon.report.fidelity import within
+from daemon.report.steps import with_steps
 from daemon.shapes import Drawing, Grey, LineGraph, PageImage, Points, Segmentation
 
 Level = TypeVar("Level", np.uint8, np.float32)
@@ -28,6 +29,8 @@ _PALE = np.asarray(184 + 71 * (np.arange(256) / np.float32(255)), np.uint8)
 def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawing: Drawing, *, name: str) -> Picture:
     """Four tiles with their legends: the page, the network's channels on it, the graph, and the strokes.
 
+    Below them what was done to the page before.
+
     segmentation, graph and drawing: in px of this page. name: of the picture, for the heading. Returns uint8
     (H, W, 3), about 1500 px wide.
     """
@@ -43,7 +46,7 @@ def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawi
     ]
     height, width = page.grey.shape
     size = f"{page.given_width_px} × {page.given_height_px} px, understood at {width} × {height} px"
-    return _laid_out(tiles, name, size)
+    return with_steps(_laid_out(tiles, name, size), page.steps)
 
 
 _Legend = list[tuple[str, Colour]]

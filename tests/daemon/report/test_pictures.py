@@ -13,7 +13,7 @@ from daemon.report.canvas import Colour, Picture
 from daemon.report.contact_sheet import Row, contact_sheet, drawn_tile, understood_tile
 from daemon.report.explain import explain
 from daemon.report.preview import in_words, preview
-from daemon.shapes import Drawing, Edge, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
+from daemon.shapes import Drawing, Edge, LineGraph, PageImage, Points, Segmentation, Step, Stroke, Toolpath
 
 LINE = np.array([[20.0, 30.0], [70.0, 30.0]])
 ARC = np.array([[20.0, 80.0], [40.0, 70.0], [70.0, 80.0]])
@@ -64,6 +64,16 @@ def test_explain_marks_ink_that_no_stroke_passes() -> None:
 def test_explain_shows_an_empty_page_and_a_very_long_name() -> None:
     picture = explained(page_with(), name="x" * 500)
     assert picture.shape == explained(page_with(LINE), LINE).shape
+
+
+def test_explain_shows_the_page_before_each_step_and_nothing_more_of_a_clean_one() -> None:
+    clean = page_with(LINE)
+    put_right = replace(clean, steps=tuple(Step(f"step {number}", clean.grey // 2) for number in range(5)))
+    picture, without = explained(put_right, LINE), explained(clean, LINE)
+    below = picture[len(without) :]
+    assert np.array_equal(picture[: len(without)], without)
+    assert ((below == 127).all(axis=2).sum(axis=1) > 1000).any()
+    assert (below == 127).all(axis=2).any(axis=0).sum() > 1000
 
 
 def test_preview_draws_with_y_up() -> None:
