@@ -86,6 +86,12 @@ def test_a_bend_between_curves_stays_a_point_of_the_line() -> None:
     assert math.dist(moves[0].end, half[-1]) < 1e-9
 
 
+def test_no_arc_rounds_off_bends_that_lie_near_enough_to_it() -> None:
+    nonagon = ring(1.46, count=9)
+    moves = fitted(Stroke(nonagon), error_mm=ERROR_MM).moves
+    assert [move.end for move in moves or ()] == [tuple(corner) for corner in nonagon[1:].tolist()]
+
+
 def test_a_straight_line_is_one_move_whatever_its_points() -> None:
     points = np.stack([np.linspace(0, 30, 90), np.full(90, 2.0)], axis=1)
     assert fitted(Stroke(points), error_mm=ERROR_MM).moves == (Line((30.0, 2.0)),)
