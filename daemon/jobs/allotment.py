@@ -106,6 +106,6 @@ class Allotment:
     def _may_have(self, station: Station, job: Job) -> bool:
         """And will get it: its own machine is away, or it would be planned for this one, which does nothing."""
         owner = self._desk.station(job.machine)
-        if job.possible or job.bound_to or owner is None or owner.free or station not in self._candidates(job):
+        if job.possible or owner is None or station not in self._candidates(job):
             return False
         return owner.away or (owner.draws and self._suits(job.id, station.name))

@@ -202,6 +202,20 @@ def test_a_journal_without_reasons_is_migrated_and_knows_no_place(tmp_path: Path
         assert backup.execute("PRAGMA user_version").fetchone() == (2,)
 
 
+def test_a_journal_without_names_tells_of_every_machine_what_it_told_of_the_one(tmp_path: Path) -> None:
+    then = [("1", "queued", "a.png"), ("1", "planning", ""), ("1", "planned", ""), ("1", "drawing", "")]
+    older(tmp_path / "j", [*then, ("", "held", "stopped")], version=2)
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert [(journal.kept.of(name).held, journal.kept.of(name).sheet_used) for name in ("left", "right")] == [
+            ("stopped", True)
+        ] * 2
+        journal.go("left")
+        journal.new_sheet("right")
+    with closing(Journal(tmp_path / "j")) as journal:
+        assert (journal.kept.of("left").held, journal.kept.of("left").sheet_used) == ("", True)
+        assert (journal.kept.of("right").held, journal.kept.of("right").sheet_used) == ("stopped", False)
+
+
 def test_a_journal_of_an_older_version_is_migrated_and_kept(tmp_path: Path) -> None:
     older(tmp_path / "j")
     with closing(Journal(tmp_path / "j")) as journal:
