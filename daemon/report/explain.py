@@ -92,7 +92,7 @@ def _channels(segmentation: Segmentation, scale: float) -> Picture:
     """Large maps are made smaller before they get colours, which take six times as much memory."""
     lines, corners = segmentation.lines, segmentation.corners
     if scale < 1:
-        lines, corners = _resized(lines, scale), _resized(corners, scale)
+        lines, corners = (_resized(large.astype(np.float32, copy=False), scale) for large in (lines, corners))
         scale = 1.0
     lines, corners = lines[..., None], corners[..., None]
     seen = np.full((*lines.shape[:2], 3), 255, np.float32)
