@@ -161,8 +161,9 @@ class Drawing:
             assert self._machine is not None
             lifted = self._machine.lift()
         except NoMachine as error:
-            self._lost(error)
-            return
+            # One that answers and is locked by an alarm moves only when it homes; a person has said that it may.
+            self.station.cut_off = self._machine is None or bool(self.station.held)
+            return self._lost(error)
         except MachineFault as error:
             self.station.trouble(f"the pen may still be down, it could not be lifted: {error}")
         else:
@@ -256,12 +257,8 @@ class Drawing:
         self._report(job, ink, real_s)
         self._inked(self._desk.folders.path(job.id), ended.strokes_certain)
         cancelled = self._desk.is_cancelled(job.id)
-        state, reason = outcome_of(
-            ended.verdict,
-            touched=ended.strokes_possible > 0,
-            cancelled=cancelled,
-            position_known=known and not self._desk.ending,
-        )
+        goes_on_knowing, touched = known and not self._desk.ending, ended.strokes_possible > 0
+        state, reason = outcome_of(ended.verdict, touched=touched, cancelled=cancelled, position_known=goes_on_knowing)
         if not self.station.held:
             self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=state in (State.CANCELLED, State.DONE))
         extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)

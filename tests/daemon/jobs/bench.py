@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from daemon.config import GrblMachine
-from daemon.errors import MachineFault, Unplugged
+from daemon.errors import MachineFault, NoMachine, Unplugged
 from daemon.jobs.allotment import Allotment
 from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing
@@ -43,6 +43,8 @@ class InstantMachine:
     unplugged: bool = False
     gone: type[MachineFault] = Unplugged
     missing: Exception | None = None
+    locked: bool = False
+    """It answers, and takes nothing before it is homed."""
     opened: int = 0
     closed: int = 0
     stops: int = 0
@@ -55,6 +57,7 @@ class InstantMachine:
     programs: list[list[str]] = field(default_factory=list)
     corner_mm: tuple[float, float] = (0.0, 0.0)
     promised: int = 0
+    feeds: list[int] = field(default_factory=list)
 
     def open(self, heard: Callable[[Event], None], still: bool) -> InstantMachine:
         self.still, self.resting = still, ""
@@ -68,6 +71,8 @@ class InstantMachine:
         return 12.5 * self.drawn + self.line
 
     def connect(self) -> Ready:
+        if self.locked and self.still:
+            raise NoMachine("instant is locked: home it")
         return Ready("Instant 1", 128)
 
     def draw(self, program: Program, promise: Promise = promise_nothing) -> Ended:
@@ -117,6 +122,9 @@ class InstantMachine:
 
     def resume(self) -> None:
         self.heard(Resumed())
+
+    def feed(self, percent: int) -> None:
+        self.feeds.append(percent)
 
     def stop(self) -> None:
         self.stops += 1

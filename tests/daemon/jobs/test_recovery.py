@@ -44,6 +44,22 @@ def test_a_cut_after_it_says_what_may_be_on_the_sheet(bench: Bench) -> None:
     after.journal.close()
 
 
+def test_a_locked_machine_is_not_asked_for_ever_to_lift_its_pen(bench: Bench) -> None:
+    bench.planned("cut.png")
+    bench.begun()
+    bench.planned("next.png")
+    after = bench.restarted()
+    after.machine.locked = True
+    after.drawing.turn()
+    assert after.station.cut_off
+    after.runner.go()
+    for _ in range(3):
+        after.now_s += 30.0
+        after.drawing.turn()
+    assert (after.states(), after.machine.lifted) == (["interrupted", "done"], 0)
+    after.journal.close()
+
+
 def test_a_fault_before_the_first_stroke_holds_but_loses_nothing(bench: Bench) -> None:
     bench.machine.endings = [Ended(Verdict.ALARM, 0, 0, False, False, "alarm: look")]
     bench.planned()
