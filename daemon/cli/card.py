@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+import signal
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
@@ -42,17 +43,27 @@ def draw(settings: Settings, *, corrected: bool) -> None:
     name, machine = only_machine(settings)
     programs = card_programs(settings.sheet_of(name), machine, corrected=corrected)
     minutes = max(1, round(card_seconds(programs, machine) / 60))
-    with our_machine(settings) as found, ThreadPoolExecutor(1) as threads:
+    with our_machine(settings) as found:
         print(f"the test card is being drawn on {found.name}, about {minutes} min; Ctrl-C lifts the pen", flush=True)
-        work = threads.submit(draw_card, programs, found)
-        while not work.done():
-            try:
-                wait([work], HEAR_EVERY_S)
-            except KeyboardInterrupt:
-                found.stop()
-        work.result()
+        attended(found, lambda: draw_card(programs, found))
     print("the test card is drawn")
     gauge_words(machine, print)
+
+
+def attended(machine: OpenMachine, work: Callable[[], object]) -> None:
+    """Have it done in a thread of its own, while this one hears Ctrl-C, which holds the machine and lifts the pen."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        with ThreadPoolExecutor(1) as threads:
+            done = threads.submit(work)
+            while not done.done():
+                try:
+                    wait([done], HEAR_EVERY_S)
+                except KeyboardInterrupt:
+                    machine.stop()
+            done.result()
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def settings_file(args: argparse.Namespace, environment: dict[str, str]) -> Path:

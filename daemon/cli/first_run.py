@@ -9,9 +9,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
-from daemon.cli.card import draw, only_machine, our_machine, settings_file, write
+from daemon.cli.card import attended, draw, only_machine, our_machine, settings_file, write
 from daemon.config import DEFAULT_MACHINE, SIMULATED_GRBL, GrblMachine, Options, Settings, load_settings
-from daemon.errors import LinedrawError, MachineFault, SettingsError
+from daemon.errors import LinedrawError, SettingsError
+from daemon.jobs.card import draw_card
 from daemon.jobs.devices import moves_of
 from daemon.jobs.sheet import box_origin_mm
 from daemon.machine.ports import DOBOT_IDS, GRBL_IDS, find_dobot, find_grbl
@@ -20,7 +21,6 @@ from daemon.setup.edit import Values, lines_of, without_keys
 from daemon.setup.first_run import Answers, settings_from
 from daemon.setup.paper import PAPERS_MM, paper_mm
 from daemon.usb import inventory
-from firmware_protocol.session import Verdict
 
 T = TypeVar("T")
 _DEVICES = {"grbl": "a plotter with GRBL", "emco": "an EMCO Concept Mill", "dobot": "a Dobot Magician",
@@ -165,10 +165,7 @@ def _frame(settings: Settings, asked: _Asked) -> bool:
     corners = [(left, bottom), (left + width, bottom), (left + width, bottom + height), (left, bottom + height)]
     program = moves_of(machine).travel([*corners, corners[0], machine.park_mm])
     with our_machine(settings) as found:
-        found.connect()
-        ended = found.draw(program)
-    if ended.verdict is not Verdict.FINISHED:
-        raise MachineFault(ended.why)
+        attended(found, lambda: draw_card([program], found))
     return asked.agrees("did the pen stay above the sheet?")
 
 

@@ -49,7 +49,10 @@ def card_seconds(programs: Sequence[Program], machine: Machine) -> float:
 
 
 def draw_card(programs: Sequence[Program], machine: OpenMachine) -> InkMm | None:
-    """On a machine whose port is open. Returns the ink of a simulated one. Raises NoMachine and MachineFault."""
+    """One program after the other, on a machine whose port is open. Returns the ink of a simulated one.
+
+    Raises NoMachine and MachineFault.
+    """
     machine.connect()
     for program in programs:
         ended = machine.draw(program)
