@@ -92,3 +92,92 @@ def test_it_is_looked_at_now_and_then(bench: Bench) -> None:
     now[0] = EVERY_S
     retention.turn()
     assert len(list(bench.desk.folders.root.iterdir())) == 1
+
+
+class Clocks:
+    """Of a computer: one that goes on evenly since it was switched on, and one that is set."""
+
+    def __init__(self, bench: Bench, wall_s: float) -> None:
+        self.bench, self.wall_s, self.now_s = bench, wall_s, 30.0
+        bench.journal._now = lambda: self.wall_s
+
+    def retention(self) -> Retention:
+        return Retention(self.bench.desk, Keep(jobs_days=30), wall=lambda: self.wall_s, now=lambda: self.now_s)
+
+    def passes(self, seconds: float) -> None:
+        self.wall_s, self.now_s = self.wall_s + seconds, self.now_s + seconds
+
+    def left(self) -> set[str]:
+        return {path.name for path in self.bench.desk.folders.root.iterdir()}
+
+
+TODAY_S = 1795000000.0
+
+
+@pytest.mark.parametrize("booted_s", [0.0, TODAY_S - 90 * DAY_S], ids=["1970", "when it was switched off"])
+@pytest.mark.parametrize("restarted", [False, True])
+def test_a_clock_that_is_set_after_the_start_makes_no_job_old(bench: Bench, booted_s: float, restarted: bool) -> None:
+    clocks = Clocks(bench, booted_s)
+    retention = clocks.retention()
+    jobs = {put(bench, State.DONE), put(bench, State.FAILED), put(bench, State.QUEUED)}
+    clocks.passes(EVERY_S)
+    retention.turn()
+    clocks.wall_s = TODAY_S
+    retention.turn()
+    if restarted:
+        retention = clocks.retention()
+    clocks.passes(29 * DAY_S)
+    retention.turn()
+    assert clocks.left() == jobs
+    clocks.passes(2 * DAY_S)
+    retention.turn()
+    assert clocks.left() == {"000003-queued"}
+
+
+def test_a_daemon_that_starts_after_an_unset_clock_was_set_counts_from_then(bench: Bench) -> None:
+    clocks = Clocks(bench, 100.0)
+    jobs = {put(bench, State.DONE), put(bench, State.QUEUED)}
+    clocks.wall_s = TODAY_S
+    retention = clocks.retention()
+    retention.turn()
+    assert clocks.left() == jobs
+    clocks.passes(31 * DAY_S)
+    retention.turn()
+    assert clocks.left() == {"000002-queued"}
+
+
+def test_a_clock_that_was_never_set_makes_no_job_old(bench: Bench) -> None:
+    clocks = Clocks(bench, 0.0)
+    jobs = {put(bench, State.DONE), put(bench, State.QUEUED)}
+    clocks.passes(400 * DAY_S)
+    clocks.retention().turn()
+    assert clocks.left() == jobs
+
+
+def test_a_clock_that_jumps_back_a_year_makes_no_job_old_and_none_younger(bench: Bench) -> None:
+    clocks = Clocks(bench, TODAY_S + 365 * DAY_S)
+    retention = clocks.retention()
+    early = put(bench, State.DONE, size=1_000_000)
+    clocks.passes(EVERY_S)
+    clocks.wall_s = TODAY_S
+    late = put(bench, State.DONE, size=1_000_000)
+    queued = put(bench, State.QUEUED)
+    clocks.passes(EVERY_S)
+    retention.turn()
+    assert clocks.left() == {early, late, queued}
+    retention.keep = Keep(jobs_mb=1.5)
+    clocks.passes(EVERY_S)
+    retention.turn()
+    assert clocks.left() == {late, queued}
+
+
+def test_a_clock_that_is_corrected_a_little_changes_no_age(bench: Bench) -> None:
+    clocks = Clocks(bench, TODAY_S)
+    retention = clocks.retention()
+    put(bench, State.DONE)
+    put(bench, State.QUEUED)
+    for _ in range(31):
+        clocks.passes(DAY_S)
+        clocks.wall_s += 2.0
+        retention.turn()
+    assert clocks.left() == {"000002-queued"}
