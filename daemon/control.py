@@ -33,7 +33,7 @@ MACHINE_ORDERS: tuple[MachineOrderName, ...] = get_args(MachineOrderName)
 
 
 PersonOrderName: TypeAlias = Literal[
-    "ping", "scan", "next", "stop", "go", "drain", "cancel", "retry", "again", "pause", "resume"
+    "ping", "scan", "next", "stop", "go", "drain", "cancel", "retry", "again", "pause", "resume", "feed"
 ]
 
 
@@ -41,7 +41,7 @@ class Order(BaseModel):
     """What a person wants.
 
     job: of cancel, retry, again and frame, and of a resume `from_stroke`. at_once: of pause. x_mm, y_mm: of jog.
-    seconds: of pen down. machine: the one that is meant, where there are several.
+    seconds: of pen down. percent: of feed. machine: the one that is meant, where there are several.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
@@ -51,6 +51,7 @@ class Order(BaseModel):
     machine: str = Field(default="", max_length=32)
     from_stroke: int | None = Field(default=None, ge=0, le=10**7)
     at_once: bool = False
+    percent: int = Field(default=100, ge=10, le=200)
     x_mm: float = Field(default=0.0, ge=-10000, le=10000)
     y_mm: float = Field(default=0.0, ge=-10000, le=10000)
     seconds: float = Field(default=10.0, gt=0, le=600)

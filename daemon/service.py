@@ -187,6 +187,7 @@ class Service:
             "go": lambda: runner.go(machine),
             "cancel": lambda: runner.cancel(order.job),
             "pause": lambda: runner.pause(machine, at_once=order.at_once),
+            "feed": lambda: runner.feed(machine, percent=order.percent),
             "resume": lambda: self._resume(order),
             "drain": lambda: runner.drain(machine),
             "retry": lambda: self._choices.retry(order.job),

@@ -43,6 +43,7 @@ class MachineStatus:
     percent: float = 0.0
     seconds_left: float | None = None
     held: str = ""
+    feed_percent: int = 100
     ink_m: float = 0.0
     pen: str = ""
 

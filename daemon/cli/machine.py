@@ -1,4 +1,4 @@
-"""`linedrawd machine`: check, home, origin, park, frame, pen, jog: for a person who stands beside the machine."""
+"""`linedrawd machine`: check, home, origin, park, frame, pen, jog, feed: for a person who stands beside the machine."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ EXAMPLES = """examples:
   linedrawd machine origin          # the sheet's corner lies where the pen stands
   linedrawd machine frame           # around the next drawing, pen up
   linedrawd machine pen down        # for 10 s, then up again
+  linedrawd machine feed 80         # slower, in the middle of a drawing; the next one is drawn as usual
   linedrawd machine park --machine left     # where there are several
-The running daemon does it, between two drawings. Where none runs, the port is opened for the one command, which resets
-many controllers: start the daemon first to keep an origin.
+The running daemon does it, all but feed between two drawings. Where none runs, the port is opened for the one command,
+which resets many controllers: start the daemon first to keep an origin.
 """
+_FIGURES = ("job", "seconds", "x_mm", "y_mm", "percent")
 _WORDS = {
     "check": "who answers, its settings, and what a drawing would want otherwise",
     "home": "find the machine's home",
@@ -29,11 +31,12 @@ _WORDS = {
     "frame": "move around the next drawing, pen up",
     "pen": "lift the pen, or lower it for some seconds",
     "jog": "move by so many mm, pen up",
+    "feed": "draw the rest of the running drawing faster or slower",
 }
 
 
 def add_parser(subparsers: Any) -> None:
-    words = "check, home, origin, park, frame, pen, jog: move the machine by hand"
+    words = "check, home, origin, park, frame, pen, jog, feed: move the machine by hand"
     parser = subparsers.add_parser(
         "machine",
         help=words,
@@ -54,6 +57,8 @@ def add_parser(subparsers: Any) -> None:
         if name == "jog":
             each.add_argument("x_mm", metavar="X", type=float, help="mm to the right")
             each.add_argument("y_mm", metavar="Y", type=float, help="mm up, away from you")
+        if name == "feed":
+            each.add_argument("percent", metavar="PERCENT", type=int, help="10 to 200; 100 is as usual")
         add_which(each)
         add_machine(each)
         add_places(each)
@@ -72,14 +77,18 @@ def run(args: argparse.Namespace) -> int:
 
 def _order(args: argparse.Namespace) -> Order:
     name = f"pen {args.way}" if args.machine_order == "pen" else args.machine_order
-    said: dict[str, Any] = {key: getattr(args, key) for key in ("job", "seconds", "x_mm", "y_mm") if hasattr(args, key)}
+    said: dict[str, Any] = {key: getattr(args, key) for key in _FIGURES if hasattr(args, key)}
     try:
         return Order.model_validate({"order": name, "machine": which_of(args), **said})
     except ValueError:
+        if args.machine_order == "feed":
+            raise LinedrawError(f"a feed of {args.percent} % is not possible: say 10 to 200") from None
         raise LinedrawError(f"{args.machine_order} of so much is not possible: give a smaller number") from None
 
 
 def _without_a_daemon(args: argparse.Namespace, order: Order) -> str:
+    if order.order == "feed":
+        raise LinedrawError("no daemon runs, so nothing is being drawn: draw_mm_s in the settings is for all drawings")
     if order.order == "origin":
         raise LinedrawError(
             "no daemon runs, and the origin would be forgotten with this command: start linedrawd first"

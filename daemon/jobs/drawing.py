@@ -14,7 +14,7 @@ from daemon.jobs.kept_ink import add_to_report, keep_ink
 from daemon.jobs.moves import Moves, homing
 from daemon.jobs.open_machine import InkMm, Open, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
-from daemon.jobs.progress import Progress, end_in_words, tell
+from daemon.jobs.progress import NOTHING_DRAWN, Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
 from daemon.jobs.retry import IDLE_S, retry_after_s
 from daemon.jobs.standing import forget_place, stand
@@ -33,7 +33,7 @@ class Drawing:
     """One turn connects, draws one job, obeys one order for the machine, or listens to an idle one.
 
     load: reads a program file. measure: compares the ink of a simulated machine with the picture of a job's folder.
-    moves, places: what a person may have the machine do between jobs, and where that leads.
+    moves, places: what a person may have the machine do between jobs, and where that leads. `asked` takes such orders.
     """
 
     def __init__(
@@ -50,10 +50,9 @@ class Drawing:
     ) -> None:
         """inked: told the folder of a job that is over and how many of its strokes are on paper."""
         self.station, self._desk, self._opened, self._load, self._measure = station, station.desk, opened, load, measure
-        self._moves, self._places, self._asked, self._inked = moves, places, Asked(self._desk.wake), inked
-        self._now = now
+        self._moves, self._places, self.asked, self._inked = moves, places, Asked(self._desk.wake), inked
         self._machine: OpenMachine | None = None
-        self._placed = False
+        self._now, self._placed = now, False
         self._progress: Progress | None = None
         self._drawn = ""
         """The job that is being drawn."""
@@ -68,7 +67,7 @@ class Drawing:
 
     def turn(self) -> float:
         """Returns the seconds to wait for a change before the next turn."""
-        if self._asked.obey_next(self.obey):
+        if self.asked.obey_next(self.obey):
             return 0.0
         if self.station.cut_off and not self._machine and self._now() >= self._retry_at_s:
             self._lift_what_was_cut_off()
@@ -83,33 +82,26 @@ class Drawing:
         self._draw(job)
         return 0.0
 
-    def ask(self, order: MachineOrder) -> str:
-        """Have the drawing thread obey an order. Called from any other; raises LinedrawError when it is refused."""
-        return self._asked.ask(order)
-
     def stop(self) -> None:
         """Break off what is being drawn, pen up. May be called from any thread."""
         machine = self._machine
         if machine:
             machine.stop()
 
-    def pause(self, *, at_once: bool) -> None:
-        """Stand still with the pen up. May be called from any thread. Raises LinedrawError where nothing is drawn."""
-        self._drawn_on().pause(at_once=at_once)
+    def look_now(self) -> None:
+        """Whatever went wrong, the machine is looked for without further waiting. May be called from any thread."""
+        self._retry_at_s = float("-inf")
 
-    def resume(self) -> None:
-        """Go on. May be called from any thread. Raises LinedrawError where nothing is drawn."""
-        self._drawn_on().resume()
-
-    def _drawn_on(self) -> OpenMachine:
+    def drawn_on(self, instead: str = "`linedrawd stop` keeps the next drawing from starting") -> OpenMachine:
+        """The machine, while it draws. May be called from any thread. Raises LinedrawError where nothing is drawn."""
         machine = self._machine
         if machine is None or self._progress is None:
-            raise LinedrawError("nothing is being drawn: `linedrawd stop` keeps the next drawing from starting")
+            raise LinedrawError(f"nothing is being drawn: {instead}")
         return machine
 
     def end(self) -> None:
         """No order is obeyed any more, and the port is given back."""
-        self._asked.refuse("linedrawd is ending: start it again")
+        self.asked.refuse("linedrawd is ending: start it again")
         self.close()
 
     def close(self) -> None:
@@ -135,6 +127,10 @@ class Drawing:
 
     def obey(self, order: MachineOrder) -> str:
         """Do it in this thread, which draws. Raises LinedrawError when it cannot be done."""
+        if self.station.cut_off and not self._machine:
+            self._lift_what_was_cut_off()
+            if self.station.cut_off and order.name != "home":
+                raise LinedrawError(f"the pen may still be down since the last drawing was cut off: {self.missing}")
         still, closed = order.name in WITHOUT_MOTION, self._machine is None
         try:
             if self._machine is not None and self._machine.rests and order.name == "origin":
@@ -146,6 +142,7 @@ class Drawing:
             words = obey(order, self._machine, self._moves, self._places)
             placed = order.name == "origin" or (order.name == "home" and self._places.counts_from_home)
             self._placed = self._placed or placed
+            self.station.cut_off = self.station.cut_off and order.name != "home"
         except (NoMachine, MachineFault) as error:
             self._lost(error)
             raise
@@ -224,19 +221,18 @@ class Drawing:
         self._progress = Progress(self.station.show, program, times_s, now=self._machine.now)
         self.station.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
-        self._asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
+        self.asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
         ended = self._ended(job, program, Ahead(self._promises(job, program), program, times_s))
         self._progress, self._drawn = None, ""
-        self._asked.accept()
+        self.asked.accept()
         self._placed = ended.position_known and (self._placed or ended.strokes_possible > job.possible)
         self._record(job, program, ended, real_s=round(self._machine.now() - begun_s, 1))
-        self.station.show(job="", picture="", strokes_done=0, strokes_total=0, percent=0.0, seconds_left=None)
+        self.station.show(**NOTHING_DRAWN)
 
     def _promises(self, job: Job, program: Program) -> Callable[[int, int], None]:
-        def write(certain: int, possible: int) -> None:
-            self._desk.journal.promise(job.id, strokes=program.strokes, certain=certain, possible=possible)
-
-        return write
+        return lambda certain, possible: self._desk.journal.promise(
+            job.id, strokes=program.strokes, certain=certain, possible=possible
+        )
 
     def _ended(self, job: Job, program: Program, promise: Ahead) -> Ended:
         assert self._machine is not None

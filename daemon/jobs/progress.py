@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from daemon.jobs.states import ink_in_words
@@ -13,6 +13,16 @@ from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Res
 
 AHEAD = 18
 """So many lines a controller acknowledges before it has drawn them: those that its planner holds."""
+NOTHING_DRAWN: Mapping[str, Any] = {
+    "job": "",
+    "picture": "",
+    "strokes_done": 0,
+    "strokes_total": 0,
+    "percent": 0.0,
+    "seconds_left": None,
+    "feed_percent": 100,
+}
+"""What the status says between two drawings."""
 
 
 class Progress:

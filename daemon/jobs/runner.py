@@ -22,6 +22,7 @@ PLANNING_WITHIN_S = 150.0
 
 
 _DRAINED = "a person said drain: nothing more is begun"
+_ALWAYS_SO = "draw_mm_s in the settings is the speed of all drawings"
 
 
 class Runner:
@@ -70,7 +71,9 @@ class Runner:
         return f"what is being drawn is finished, no further job starts until you say {station.command('go')}"
 
     def go(self, machine: str = "") -> str:
-        self._one(machine).station.go()
+        drawing = self._one(machine)
+        drawing.look_now()
+        drawing.station.go()
         return "jobs may start again"
 
     def cancel(self, job_id: str) -> str:
@@ -89,19 +92,26 @@ class Runner:
         if not paused:
             raise LinedrawError("nothing is being drawn: `linedrawd stop` keeps the next drawing from starting")
         for each in paused:
-            each.pause(at_once=at_once)
+            each.drawn_on().pause(at_once=at_once)
         return (
             f"the machine pauses {'at once' if at_once else 'at the end of the stroke'}: "
             f"{_commands(paused, 'resume')} goes on"
         )
 
     def resume(self, machine: str = "") -> str:
-        self._one(machine).resume()
+        self._one(machine).drawn_on().resume()
         return "the drawing goes on"
+
+    def feed(self, machine: str = "", *, percent: int) -> str:
+        """Draw the rest of the running drawing at so many percent of its feeds."""
+        drawing = self._one(machine)
+        drawing.drawn_on(_ALWAYS_SO).feed(percent)
+        drawing.station.show(feed_percent=percent)
+        return f"the rest of this drawing is drawn at {percent} % of its speed"
 
     def move(self, order: MachineOrder, machine: str = "") -> str:
         """Between two drawings; waits until it has been done."""
-        return self._one(machine).ask(order)
+        return self._one(machine).asked.ask(order)
 
     def placed(self, machine: str) -> bool:
         """This machine knows where the sheet's origin is."""

@@ -72,3 +72,31 @@ def test_where_no_daemon_runs_the_port_is_opened_for_the_order(
     assert main(["machine", "jog", "1e9", "0", *options]) == 1
     assert main(["machine", "check", "--state-dir", str(tmp_path / "state")]) == 2
     assert "no machine is set" in capsys.readouterr().err
+
+
+def test_the_feed_of_a_running_drawing_is_overridden_from_the_command_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["machine", "feed", "80", "--state-dir", str(tmp_path / "state")]
+    with running(settings_of(tmp_path, port="sim://grbl?speed=1")) as daemon:
+        assert main(command) != 0
+        daemon.drop("a.png")
+        while not daemon.parts.board.now.strokes_total:
+            daemon.parts.desk.wait(0.02)
+        assert main(command) == 0
+        assert daemon.parts.board.now.feed_percent == 80
+        daemon.order("stop")
+        while daemon.parts.board.now.strokes_total:
+            daemon.parts.desk.wait(0.02)
+        assert daemon.parts.board.now.feed_percent == 100
+    said = capsys.readouterr()
+    assert "nothing is being drawn" in said.err
+    assert "the rest of this drawing is drawn at 80 % of its speed" in said.out
+
+
+def test_a_feed_needs_a_daemon_and_a_percentage_that_a_controller_takes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for percent, why in (("80", "no daemon runs"), ("9", "say 10 to 200"), ("201", "say 10 to 200")):
+        assert main(["machine", "feed", percent, "--state-dir", str(tmp_path)]) != 0
+        assert why in capsys.readouterr().err

@@ -166,7 +166,7 @@ def test_a_mistake_of_ours_answers_too(bench: Bench) -> None:
 
     giver = Thread(target=give)
     giver.start()
-    bench.wait_for(lambda: bench.drawing._asked._waiting)
+    bench.wait_for(lambda: bench.drawing.asked._waiting)
     with pytest.raises(KeyError):
         bench.drawing.turn()
     giver.join(5)
