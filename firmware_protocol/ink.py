@@ -73,6 +73,10 @@ class Ink:
         """Motion was cut: what follows is another line, even from the same place."""
         self._open = False
 
+    def clear(self) -> None:
+        """A new sheet: a line that is under way begins anew."""
+        self.polylines = []
+
     def copy(self) -> Ink:
         """The same ink, to draw on without changing this one."""
         other = Ink(self.rule)

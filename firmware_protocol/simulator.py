@@ -20,6 +20,9 @@ class Simulator(Protocol):
     def ink(self) -> Sequence[Polyline]:
         """What is on the sheet: polylines of (x, y) in mm, executed, not commanded."""
 
+    def clear_sheet(self) -> None:
+        """A new sheet lies under the pen: `ink` begins anew."""
+
     @property
     def unplugged(self) -> bool:
         """The way to it is cut: the host sees the end of the file."""

@@ -82,7 +82,6 @@ class OpenedMachine(Generic[S]):
         if record.recorder:
             record.recorder.opened(now, record.settings)
         self._link = Link(transport, self.session, heard=self._hear, recorder=record.recorder, turned=record.turned)
-        self._polylines_taken = 0
         self._corner_mm: PlaceMm = (0.0, 0.0)
         self._position_mm: Vector | None = None
 
@@ -122,9 +121,8 @@ class OpenedMachine(Generic[S]):
         transport = self._transport
         if not isinstance(transport, SimulatedTransport):
             return None
-        new, self._polylines_taken = transport.ink[self._polylines_taken :], len(transport.ink)
         x_mm, y_mm = self._corner_mm
-        return [[(x - x_mm, y - y_mm) for x, y in line] for line in new]
+        return [[(x - x_mm, y - y_mm) for x, y in line] for line in transport.take_ink()]
 
     def position_mm(self) -> Vector | None:
         """Where the pen is, in the coordinates that programs speak before `count_from`; None when it is not said.

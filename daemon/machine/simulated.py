@@ -54,6 +54,12 @@ class SimulatedTransport:
         """What is on the sheet: polylines of (x, y) in mm."""
         return self.simulator.ink
 
+    def take_ink(self) -> Sequence[Polyline]:
+        """What is on the sheet, and a new sheet for what follows: nobody remembers every sheet of a month."""
+        ink = self.simulator.ink
+        self.simulator.clear_sheet()
+        return ink
+
     def now(self) -> float:
         if self.speed and not self._closed:
             self._now = max(self._now, self._began_s + (time.monotonic() - self._started_s) * self.speed)

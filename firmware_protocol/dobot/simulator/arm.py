@@ -184,6 +184,9 @@ class Arm:
         """On the sheet now, the part of the present move included."""
         return self._trace.ink(self._way())
 
+    def clear_sheet(self) -> None:
+        self._trace.clear()
+
     @property
     def on_paper(self) -> bool:
         """Whether the pen touches the sheet."""

@@ -86,6 +86,10 @@ class DobotSimulator:
         """What is on the sheet now: polylines of (x, y) in mm."""
         return self.arm.ink
 
+    def clear_sheet(self) -> None:
+        """A new sheet lies under the pen: `ink` begins anew."""
+        self.arm.clear_sheet()
+
     @property
     def acks(self) -> int:
         """Commands for the queue acknowledged since the port was opened, those included whose reply was lost."""

@@ -26,6 +26,9 @@ class Trace:
         """The motion was cut."""
         self._ink.cut()
 
+    def clear(self) -> None:
+        self._ink.clear()
+
     def ink(self, way: Sequence[Vector]) -> list[Polyline]:
         """What is on the sheet, `way` of the present move included."""
         ink = self._ink.copy()

@@ -83,6 +83,9 @@ class Axes:
         ink.travel(part.start, part.end)
         return ink
 
+    def clear_sheet(self) -> None:
+        self._ink.clear()
+
     def _finish(self, move: Move) -> None:
         self._ink.travel(move.start, move.end)
         self._position_mm = move.end

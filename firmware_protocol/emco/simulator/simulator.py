@@ -55,6 +55,10 @@ class EmcoSimulator:
         """What is on the sheet now: polylines of (x, y) in mm, in the coordinates of the program."""
         return self._reading.axes.ink(self._now).polylines
 
+    def clear_sheet(self) -> None:
+        """A new sheet lies under the pen: `ink` begins anew."""
+        self._reading.axes.clear_sheet()
+
     @property
     def path(self) -> Sequence[tuple[float, Vector]]:
         """The executed path: when the end of each move was reached, and where it is."""

@@ -84,6 +84,10 @@ class GrblSimulator:
         """What is on the sheet now: polylines of (x, y) in mm from the place where the machine was switched on."""
         return self._chip.ink_now().polylines
 
+    def clear_sheet(self) -> None:
+        """A new sheet lies under the pen: `ink` begins anew."""
+        self._chip.ink.clear()
+
     @property
     def position_mm(self) -> Vector:
         """Where the pen is on the sheet, whatever the controller believes."""

@@ -133,3 +133,15 @@ def test_the_same_simulator_may_be_opened_again() -> None:
     first.close()
     second = SimulatedTransport(simulator)
     assert b"Grbl 1.1h" in heard(second, second.now() + 0.1)
+
+
+def test_ink_is_taken_once() -> None:
+    transport = open_simulated("sim://grbl?110=3000&120=200")
+    heard(transport, 0.1)
+    transport.write(b"G1X1F100\n")
+    heard(transport, 5.0)
+    assert transport.take_ink() == [[(0.0, 0.0), (1.0, 0.0)]]
+    assert transport.take_ink() == []
+    transport.write(b"G1X2F100\n")
+    heard(transport, 10.0)
+    assert transport.take_ink() == [[(1.0, 0.0), (2.0, 0.0)]]
