@@ -61,8 +61,10 @@ def parts_of(
     """
     paths, keep = settings.paths, settings.keep
     _check_machines(settings, record)
-    for folder in (paths.state_dir, *settings.inboxes.values(), paths.log_dir, paths.runtime_dir):
+    for folder in (paths.state_dir, paths.inbox, paths.log_dir, paths.runtime_dir):
         make_folder(folder)
+    for inbox in settings.inboxes.values():
+        _make_inbox(inbox, like=paths.inbox)
     with ExitStack() as at_end:
         at_end.enter_context(_only_one(paths.state_dir))
         folders = JobFolders(paths.jobs)
@@ -86,6 +88,12 @@ def parts_of(
             _add_machine(parts, settings, name, recorder)
             at_end.callback(drawings[name].close)
         yield parts
+
+
+def _make_inbox(inbox: Path, *, like: Path) -> None:
+    """Whoever may drop pictures into the one may do so into the other."""
+    if not inbox.exists():
+        make_folder(inbox).chmod(like.stat().st_mode & 0o7777)
 
 
 def _check_machines(settings: Settings, record: Path | None) -> None:

@@ -32,7 +32,8 @@ class Beats:
         return heard
 
     def measuring(self, pool: Pool, folder: Path, machine: str) -> None:
-        # The worker may be planning another picture first.
-        self._heart.within(LINK_WITHIN_S + 2 * pool.settings.planning.time_limit_s)
+        # The worker may be planning another picture first, and measuring what every other machine has drawn.
+        first = 1 + len(pool.settings.machines)
+        self._heart.within(LINK_WITHIN_S + first * pool.settings.planning.time_limit_s)
         pool.measure(folder, machine)
         self.turned()

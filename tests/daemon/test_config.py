@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,10 +21,12 @@ from daemon.errors import SettingsError
 from daemon.intake.side import parse
 
 
-def settings(text: str, folder: Path, *, device: str | None = None, port: str | None = None) -> Settings:
+def settings(text: str, folder: Path, **said: str) -> Settings:
     file = folder / "linedrawd.toml"
     file.write_text(text, encoding="utf-8")
-    return load_settings(Options(config=file, device=device, port=port), environment={"HOME": str(folder)})
+    options: dict[str, Any] = {"config": file, **said}
+    machine = "machine" in said
+    return load_settings(Options(**options), environment={"HOME": str(folder)}, one_machine=machine)
 
 
 @pytest.mark.parametrize(
@@ -108,6 +111,32 @@ def test_a_machine_is_simulated_only_where_somebody_asked_for_it(tmp_path: Path)
 def test_the_command_line_wins_over_the_file(tmp_path: Path) -> None:
     machine = settings("[machines.left]\nurl = 'auto'\nbaud = 9600", tmp_path, port="/dev/ttyACM1").machines["left"]
     assert (machine.url, machine.baud) == ("serial:///dev/ttyACM1", 9600)
+
+
+TWO = "[machines.left]\nurl = '/dev/ttyUSB7'\n[machines.right]\nurl = '/dev/ttyUSB8'\nbox_mm = [20, 30]"
+
+
+def test_the_command_line_tells_of_one_of_several_machines_only_by_its_name(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=r"2 are set \(left, right\): say it in their sections"):
+        settings(TWO, tmp_path, port="/dev/ttyACM1")
+    only = settings(TWO, tmp_path, machine="right", port="/dev/ttyACM1")
+    assert {name: machine.url for name, machine in only.machines.items()} == {"right": "serial:///dev/ttyACM1"}
+    with pytest.raises(SettingsError, match="the machine rihgt is unknown: did you mean right"):
+        settings(TWO, tmp_path, machine="rihgt")
+
+
+def test_a_machine_may_have_a_sheet_of_its_own(tmp_path: Path) -> None:
+    both = settings(TWO + "\n[sheet]\nbox_mm = [50, 60]\nmargin_mm = 5", tmp_path)
+    assert (both.sheet_of("left").box_mm, both.sheet_of("right").box_mm) == ((50.0, 60.0), (20.0, 30.0))
+    assert both.sheet_of("right").margin_mm == 5.0
+    assert not both.machines["left"].draws_like(both.machines["right"])
+
+
+def test_machines_that_differ_in_their_port_alone_draw_each_others_programs(tmp_path: Path) -> None:
+    both = settings(TWO.replace("box_mm = [20, 30]", "sheet = 'feed'\ninbox = 'right'"), tmp_path)
+    assert both.machines["left"].draws_like(both.machines["right"])
+    assert both.sharing == {"left"}
+    assert both.inboxes == {"": both.paths.inbox, "right": both.paths.inbox.parent / "right"}
 
 
 def test_each_device_is_named_on_the_command_line(tmp_path: Path) -> None:

@@ -74,10 +74,16 @@ def test_a_machine_that_is_unplugged_interrupts_its_job_and_the_other_goes_on_wi
 
 def test_an_inbox_each(tmp_path: Path) -> None:
     settings = settings_of(tmp_path, left=SLOW + "\ninbox = 'left'", right=SLOW + "\ninbox = 'right'")
+    settings.paths.inbox.mkdir(parents=True)
+    settings.paths.inbox.chmod(0o2770)
     with running(settings) as daemon:
+        assert (tmp_path / "state" / "left").stat().st_mode & 0o7777 == 0o2770
         for number in range(3):
             (tmp_path / "state" / "left" / f"{number}.png").write_text("good")
         jobs = daemon.wait_for(lambda jobs: len(jobs) == 3 and ended(jobs))
+        (tmp_path / "state" / "left" / "NEXT").write_text("")
+        while "a new sheet is in machine=left" not in daemon.log():
+            daemon.parts.desk.wait(0.05)
         (tmp_path / "state" / "right" / "side.toml").write_text("machine = 'left'")
         (tmp_path / "state" / "right" / "side.png").write_text("good")
         while "this is the inbox of right: leave it out" not in daemon.log():

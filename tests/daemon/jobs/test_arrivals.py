@@ -16,6 +16,7 @@ from daemon.config import Options, Settings, load_settings
 from daemon.errors import DiskTrouble, SettingsError
 from daemon.intake.rank import rank
 from daemon.jobs.allotment import Allotment
+from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
 from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import JobFolders, source_of
@@ -26,6 +27,7 @@ from daemon.jobs.wishes import SIDE_NAME, settings_for
 from daemon.parts import parts_of
 from tests.daemon.jobs.test_folder import drop
 
+SKIP = "duplicates = 'skip'"
 WISHES = b"copies = 2\nsize_mm = 40\n"
 
 
@@ -152,7 +154,8 @@ def cuts(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> lis
     for name in ("unlink", "mkdir"):
         monkeypatch.setattr(Path, name, counted(getattr(Path, name)))
     monkeypatch.setattr(os, "fsync", counted(lambda descriptor: None))
-    monkeypatch.setattr(Journal, "add", counted(Journal.add))
+    for record in ("add", "adopt", "step"):
+        monkeypatch.setattr(Journal, record, counted(getattr(Journal, record)))
     return left
 
 
@@ -216,6 +219,60 @@ def test_the_same_picture_twice_is_drawn_once_where_duplicates_are_skipped(tmp_p
             assert words.startswith("the same picture as job 000001-a (duplicates = 'skip')")
     assert intake.states() == ["queued", "cancelled", "queued"]
     assert list(intake.inbox.iterdir()) == []
+
+
+def test_no_cut_loses_or_draws_what_is_skipped(tmp_path: Path, cuts: list[int]) -> None:
+    for steps in range(100):
+        cuts[0] = -1
+        root = tmp_path / str(steps)
+        root.mkdir()
+        intake = Intake(root, SKIP)
+        for name in ("a.png", "b.png"):
+            drop(intake.inbox, name)
+        intake.take("a.png", None)
+        cuts[0] = steps
+        try:
+            intake.take("b.png", None)
+        except Cut:
+            finished = False
+        else:
+            finished = True
+        cuts[0] = -1
+        intake.journal.close()
+        _after_the_second(root)
+        if finished:
+            assert steps > 5
+            return
+    pytest.fail("it never came to its end")
+
+
+def _after_the_second(root: Path) -> None:
+    intake = Intake(root, SKIP)
+    intake.recover()
+    if (intake.inbox / "b.png").exists():
+        intake.take("b.png", None)
+    first, second = intake.journal.jobs()
+    assert (first.state, second.state) == (State.QUEUED, State.CANCELLED)
+    assert (second.name, second.words.startswith("the same picture as job 000001-a")) == ("b.png", True)
+    source = source_of(intake.folders.path(second.id))
+    assert source is not None
+    assert source.read_bytes() == b"picture"
+    assert list(intake.inbox.iterdir()) == []
+    intake.journal.close()
+
+
+def test_what_is_skipped_is_never_queued_not_even_for_a_moment(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, SKIP)
+    for name in ("a.png", "b.png"):
+        drop(intake.inbox, name)
+        intake.take(name, None)
+    intake.journal.close()
+    for file in tmp_path.glob("journal.sqlite*"):
+        file.unlink()
+    after = Intake(tmp_path, SKIP)
+    after.recover()
+    assert after.states() == ["queued", "cancelled"]
+    after.journal.close()
 
 
 def test_a_picture_that_was_not_drawn_or_is_wished_otherwise_is_no_duplicate(tmp_path: Path) -> None:
@@ -296,3 +353,23 @@ def test_a_folder_that_a_person_deleted_leaves_its_number_used(tmp_path: Path) -
         drop(intake.inbox, "a.png")
         Arrivals(parts.desk, intake.settings).take(intake.inbox / "a.png", None)
         assert [job.id for job in parts.desk.journal.jobs()] == ["000001-a", "000002-a"]
+
+
+@pytest.mark.parametrize("machine", ["plotter", ""])
+def test_a_cut_before_the_record_forgets_neither_the_inbox_nor_the_machine(tmp_path: Path, machine: str) -> None:
+    intake, own = Intake(tmp_path), tmp_path / "own"
+    own.mkdir()
+    drop(intake.inbox, "a.png")
+    for folder in (own, intake.inbox):
+        (folder / "a.toml").write_bytes(WISHES)
+    arrival = Arrival("a.png", "a.toml", 2, inbox=machine, machine=machine)
+    intake.folders.take(intake.inbox / "a.png", {ARRIVAL_NAME: arrival.encoded(), SIDE_NAME: WISHES})
+    intake.arrivals.recover({"": intake.inbox, "plotter": own})
+    assert [(job.name, job.bound_to) for job in intake.journal.jobs()] == [("a.png", machine)] * 2
+    left = intake.inbox if machine else own
+    assert [path for path in (own / "a.toml", intake.inbox / "a.toml") if path.exists()] == [left / "a.toml"]
+
+
+def test_what_an_older_version_wrote_of_an_arrival_is_understood(tmp_path: Path) -> None:
+    (tmp_path / ARRIVAL_NAME).write_text('{"name": "a.png", "side": "", "copies": 1, "copy_of": ""}')
+    assert arrival_in(tmp_path) == Arrival("a.png", "", 1)
