@@ -14,6 +14,7 @@ class Arrival:
     """name: of the picture. side: of its side file, "" for none. copy_of: the job that it is a copy of.
 
     inbox: the machine whose inbox it came by, "" for that of all. machine: the one that shall draw it, "" for any.
+    twin: the job of the same picture because of which this one is not drawn; "" where it is.
     """
 
     name: str
@@ -22,6 +23,7 @@ class Arrival:
     copy_of: str = ""
     inbox: str = ""
     machine: str = ""
+    twin: str = ""
 
     def encoded(self) -> bytes:
         return json.dumps(asdict(self)).encode()

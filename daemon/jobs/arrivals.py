@@ -20,6 +20,7 @@ from daemon.jobs.record import read_record
 from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME, machines_for, with_wishes
 
+_TWIN = "the same picture as job {twin} (duplicates = 'skip'): `linedrawd again {twin}` draws it anew"
 _NOT_DRAWN = (State.FAILED, State.CANCELLED, State.INTERRUPTED)
 
 
@@ -48,15 +49,14 @@ class Arrivals:
         said, wishes = self._wishes(beside, inbox)
         twin = self._twin(picture, said) if self.settings.intake.duplicates == "skip" else ""
         copies = 1 if twin else wishes.copies
-        arrival = Arrival(name, beside.name if beside else "", copies, inbox=inbox, machine=wishes.machine or inbox)
+        side, machine = beside.name if beside else "", wishes.machine or inbox
+        # The twin too, before the picture is taken: whoever finds it after a cut must not draw it again.
+        arrival = Arrival(name, side, copies, inbox=inbox, machine=machine, twin=twin)
         files = {ARRIVAL_NAME: arrival.encoded()}
         if beside:
             files[SIDE_NAME] = said
         job = self._desk.folders.take(picture, files)
         self._add([job], arrival, beside)
-        if twin:
-            words = f"the same picture as job {twin} (duplicates = 'skip'): `linedrawd again {twin}` draws it anew"
-            self._desk.step(job, State.CANCELLED, words)
 
     def recover(self, inboxes: Mapping[str, Path]) -> None:
         """After a start, before the desk: make the jobs whose pictures had come in but were not recorded.
@@ -123,7 +123,9 @@ class Arrivals:
             _remove_taken(beside, folder / SIDE_NAME)
         # Not before all of them have their folders: what is recorded is not looked at again after a cut.
         for each in made:
-            if each not in recorded:
+            if each not in recorded and arrival.twin:
+                self._desk.add_dropped(each, arrival.name, _TWIN.format(twin=arrival.twin))
+            elif each not in recorded:
                 self._desk.add(each, arrival.name, bound_to=arrival.machine)
         self._remember(made)
 

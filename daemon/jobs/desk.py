@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -137,6 +138,13 @@ class Desk:
         self.say("the picture is queued", job=job_id, state=State.QUEUED.value, name=name)
         self._show_queue()
         return job_id
+
+    def add_dropped(self, job_id: str, name: str, words: str) -> None:
+        """A job that is recorded and dropped in one, so that nothing can begin it in between. Raises DiskTrouble."""
+        job = Job(job_id, name, State.CANCELLED, words, time.time())
+        self.journal.adopt(job)
+        self._record(job)
+        self._tell_step(job, {"name": name})
 
     def step(
         self,

@@ -261,7 +261,7 @@ def _after_the_second(root: Path) -> None:
     intake.journal.close()
 
 
-def test_what_is_skipped_is_never_queued_not_even_for_a_moment(tmp_path: Path) -> None:
+def test_what_was_skipped_stays_so_where_the_journal_is_lost(tmp_path: Path) -> None:
     intake = Intake(tmp_path, SKIP)
     for name in ("a.png", "b.png"):
         drop(intake.inbox, name)
