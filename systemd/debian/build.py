@@ -70,7 +70,7 @@ def package(parts: list[Part], arch: str, out: Path, tree: Path) -> Path:
     _write_control(version, arch, tree, unpacked=max(_unpacked(parts).values()))
     file = out / f"linedrawd_{version}_{arch}.deb"
     # The wheels are squeezed already.
-    subprocess.run(["dpkg-deb", "-Zzstd", "-z1", "--root-owner-group", "--build", tree, file], check=True)
+    subprocess.run(["dpkg-deb", "-Zgzip", "-z1", "--root-owner-group", "--build", tree, file], check=True)
     _print_sizes(parts, file, tree)
     return file
 

@@ -18,7 +18,7 @@ PROJECT = Path(__file__).parents[2]
 CACHE = PROJECT / ".debian"
 PYTHONS = {"bookworm": "3.11", "trixie": "3.13"}
 UNIT = "linedrawd.service"
-_BOOT_WITHIN_S = 60.0
+_BOOT_WITHIN_S, _OFF_WITHIN_S = 60.0, 30.0
 _COMMAND_WITHIN_S = 600.0
 _PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 _NEEDED = {"mmdebstrap": "mmdebstrap", "systemd-nspawn": "systemd-container", "dpkg-deb": "dpkg"}
@@ -96,15 +96,12 @@ def _booted(root: Path, folder: Path) -> Iterator[Machine | None]:
         outer = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=console, stderr=console)
     booted = Booted(root, outer.pid)
     try:
-        yield booted if booted.is_running(outer) else None
+        runs = booted.is_running(outer)
+        if not runs:
+            booted.end(outer)
+        yield booted if runs else None
     finally:
-        if outer.poll() is None:
-            booted.run("systemctl", "poweroff", check=False)
-        try:
-            outer.wait(30)
-        except subprocess.TimeoutExpired:
-            outer.kill()
-            outer.wait()
+        booted.end(outer)
 
 
 class Booted:
@@ -123,6 +120,16 @@ class Booted:
                 return True
             time.sleep(0.2)
         return False
+
+    def end(self, outer: subprocess.Popen[bytes]) -> None:
+        """Switch it off, and end it where it does not go."""
+        if outer.poll() is None and self._leader():
+            self.run("systemctl", "poweroff", check=False)
+        try:
+            outer.wait(_OFF_WITHIN_S if self._leader() else 0)
+        except subprocess.TimeoutExpired:
+            outer.kill()
+            outer.wait()
 
     def run(self, *command: str, check: bool = True) -> str:
         return _said([*self._inside(), *command], check=check)
@@ -180,9 +187,7 @@ class Chrooted:
         return _said(["chroot", str(self.root), *command], check=check, env={"PATH": _PATH, "LC_ALL": "C.UTF-8"})
 
     def start(self) -> subprocess.Popen[bytes]:
-        folders = {"STATE": "lib", "LOGS": "log", "RUNTIME": "run"}
-        places = {name: f"/run/{'' if name == 'RUNTIME' else name.lower() + '-'}linedrawd" for name in folders}
-        places |= {"STATE": "/var/lib/linedrawd", "LOGS": "/var/log/linedrawd"}
+        places = {"STATE": "/var/lib/linedrawd", "LOGS": "/var/log/linedrawd", "RUNTIME": "/run/linedrawd"}
         for place in places.values():
             self.run("install", "-d", "-m", "750", "-o", "linedrawd", "-g", "linedrawd", place)
         unit = (self.root / "usr/lib/systemd/system" / UNIT).read_text()

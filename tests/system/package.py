@@ -83,8 +83,7 @@ class Life:
 
     def look_at_the_unit(self) -> None:
         unit = "/usr/lib/systemd/system/linedrawd.service"
-        said = self._debian.run("systemd-analyze", "verify", "--man=no", unit)
-        assert [line for line in said.splitlines() if "linedrawd" in line] == []
+        assert self._debian.run("systemd-analyze", "verify", "--man=no", unit) == ""
         security = ("systemd-analyze", "security", "--offline=true", f"--threshold={10 * EXPOSURE:.0f}", unit)
         found = re.findall(r"level for linedrawd.service: ([\d.]+)", self._debian.run(*security))
         self._say(f"the unit: systemd-analyze verify is silent, exposure {found[0]} (bar {EXPOSURE})")
