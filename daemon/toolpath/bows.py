@@ -17,6 +17,8 @@ _LARGEST_RADIUS_MM = 1000.0
 _LARGEST_BULGE = 1.1
 """A little more than half a turn, so that two of them are a circle wherever the samples lie."""
 
+_LEAST_HEIGHT = 0.1
+
 
 class Bow(NamedTuple):
     """start, end: (2,) in mm. bulge: twice the height by the length of the chord, above 0 where it lies to the left."""
@@ -45,22 +47,50 @@ def bow(samples: Points, *, error_mm: float) -> Bow | None:
     samples: (N, 2), N >= 2. A straight line where that is near enough, else the arc in the middle of those that are.
     The samples also follow each other along it: none lies further back than error_mm behind one before it.
     """
-    start, end = samples[0], samples[-1]
-    chord = math.dist(start, end)
-    if chord == 0:
+    seen = _seen(samples)
+    if seen is None:
         return None
-    along = (end - start) / chord
-    off = samples[1:-1] - start
-    u, v = off @ along, off[:, 1] * along[0] - off[:, 0] * along[1]
+    u, v, chord = seen
     least, most = _bulges(u, v, chord, error_mm)
     if least > most or least > _LARGEST_BULGE or most < -_LARGEST_BULGE:
         return None
     bulge = 0.0 if least <= 0 <= most else min(_LARGEST_BULGE, max(-_LARGEST_BULGE, (least + most) / 2))
-    if bulge and chord * (abs(bulge) + 1 / abs(bulge)) / 4 > _LARGEST_RADIUS_MM:
+    return Bow(samples[0], samples[-1], bulge) if _holds(u, v, chord, bulge, error_mm) else None
+
+
+def nearest(samples: Points, found: Bow, *, error_mm: float) -> Bow:
+    """The bow between the same ends that lies in the midst of the samples, where it is as near to all of them.
+
+    Least squares of how far samples are from the arc, to first order: the bulge through each, weighed by how far its
+    place moves with the bulge. Straight where the arc would be no higher than a tenth of the error.
+    """
+    seen = _seen(samples)
+    if seen is None or len(seen[0]) == 0:
+        return found
+    u, v, chord = seen
+    lever = np.square(np.maximum(u * (chord - u), 0.0) + v * v)
+    bulge = float(lever @ _bulge_through(u, v, chord) / max(float(lever.sum()), 1e-12))
+    bulge = 0.0 if abs(bulge) * chord / 2 < _LEAST_HEIGHT * error_mm else bulge
+    better = abs(bulge) <= _LARGEST_BULGE and _holds(u, v, chord, bulge, error_mm)
+    return found._replace(bulge=bulge) if better else found
+
+
+def _seen(samples: Points) -> tuple[Floats, Floats, float] | None:
+    """The inner samples along the chord and to its left, and its length; None where the ends are one place."""
+    chord = math.dist(samples[0], samples[-1])
+    if chord == 0:
         return None
+    along, off = (samples[-1] - samples[0]) / chord, samples[1:-1] - samples[0]
+    return off @ along, off[:, 1] * along[0] - off[:, 0] * along[1], chord
+
+
+def _holds(u: Floats, v: Floats, chord: float, bulge: float, error_mm: float) -> bool:
+    """Whether all samples are near enough to the bow, and follow each other along it."""
+    if bulge and chord * (abs(bulge) + 1 / abs(bulge)) / 4 > _LARGEST_RADIUS_MM:
+        return False
     away, place = _along_arc(u, v, chord, bulge) if bulge else _along_chord(u, v, chord)
     back = (np.maximum.accumulate(place) - place).max(initial=0.0)
-    return Bow(start, end, bulge) if max(away.max(initial=0.0), back) <= error_mm else None
+    return bool(max(away.max(initial=0.0), back) <= error_mm)
 
 
 def _bulges(u: Floats, v: Floats, chord: float, error_mm: float) -> tuple[float, float]:

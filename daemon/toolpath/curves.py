@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.shapes import Arc, Line, Points, Stroke
-from daemon.toolpath.bows import Bow, bow
+from daemon.toolpath.bows import Bow, bow, nearest
 from daemon.toolpath.corners import corners
 
 Room: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
@@ -40,11 +40,8 @@ def fitted(stroke: Stroke, *, error_mm: float, shortest_mm: float = 0.0, room: R
         return replace(stroke, points=stroke.points[:1], moves=None)
     samples, vertices = sampled(trace, max(_STEP_ERRORS * error_mm, _SHORTEST_STEP_MM))
     tips = vertices[corners(trace, error_mm=error_mm)].tolist()
-    pieces = [
-        piece
-        for a, b in pairwise([0, *tips, len(samples) - 1])
-        for piece in _greedy(samples[a : b + 1], error_mm, room)
-    ]
+    runs = (samples[a : b + 1] for a, b in pairwise([0, *tips, len(samples) - 1]))
+    pieces = [piece for run in runs for piece in _greedy(run, error_mm, room)]
     ends = [tuple(piece.start.tolist()) for piece in pieces[1:]] + [tuple(samples[-1].tolist())]
     moves = tuple(piece.bow.move(end) for piece, end in zip(pieces, ends, strict=True))
     return replace(stroke, points=points_of(samples[0], moves), moves=moves)
@@ -79,7 +76,8 @@ def _greedy(samples: Points, error_mm: float, room: Room | None) -> list[_Piece]
     first, reach = 0, _FIRST_REACH
     while first < len(samples) - 1:
         last, found = _furthest(samples[first:], reach, error_mm, room)
-        pieces.append(_Piece(samples[first], found))
+        better = nearest(samples[first : first + last + 1], found, error_mm=error_mm)
+        pieces.append(_Piece(samples[first], better if _inside(better, room) else found))
         first, reach = first + last, max(_FIRST_REACH, last // 2)
     return pieces
 
