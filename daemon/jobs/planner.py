@@ -30,8 +30,7 @@ from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
 from daemon.page.back import given_px, on_given
-from daemon.page.line_width import fit_line_width
-from daemon.page.prepare import put_right
+from daemon.page.prepare import fit, put_right
 from daemon.program.file import program_text
 from daemon.program.svg import write_svg
 from daemon.report import canvas
@@ -66,7 +65,7 @@ def plan_picture(
         given = decode(source, max_megapixels=settings.intake.max_megapixels, name=name)
     with stages("page"):
         readable = put_right(given)
-        page = fit_line_width(readable)
+        page = fit(readable)
     with stages("vision"):
         segmentation = segmenter(settings.planning.threads).segment(page)
     with stages("graph"):

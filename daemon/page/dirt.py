@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from daemon.ink import Mask, ink_threshold
+from daemon.ink import ink_threshold
 from daemon.page.back import noted
 from daemon.page.line_width import line_width_px
-from daemon.page.tones import tones
 from daemon.shapes import Grey, PageImage
 
 _SPECK_WIDTHS = 0.6
@@ -19,67 +19,75 @@ _PALE = 0.6
 _STAIN_WIDTHS = 2.0
 _HOLE_WIDTHS, _HOLE_SHARE = 4.0, 0.06
 _RIM_SHARE = 0.1
-_ROUND = 0.72
+_ROUND, _LONGEST = 0.72, 1.3
 _WHITE = 255
 
 
 def clean_paper(page: PageImage) -> PageImage:
     """The page without specks, pale stains and the holes of a punch; else the page itself.
 
-    page: ink and paper spread, as a page is that something was done to; another page is clean already.
-    Specks are smaller than the line is wide; stains are no larger than two line widths and paler than the ink; holes
-    are round, filled, wider than four lines, and lie near the page's rim by themselves. A dot that the pen has drawn
-    is none of these.
+    page: ink and paper spread, as a page is that something was done to; another page is clean already. Dirt lies by
+    itself, a line's width from everything else that is darker than paper. Specks are smaller than the line is wide;
+    stains are no larger than two line widths and paler than the ink; holes are round, filled, wider than four lines,
+    and lie near the page's rim. A dot that the pen has drawn is none of these, nor is a piece of a faint line.
     """
-    found, threshold = tones(page.grey), ink_threshold(page.grey)
-    if not page.steps or found is None or threshold is None:
+    threshold = ink_threshold(page.grey) if page.steps else None
+    width_px = None if threshold is None else line_width_px(page.grey)
+    if threshold is None or width_px is None:
         return page
-    width_px = line_width_px(page.grey)
-    if width_px is None:
-        return page
-    ink = page.grey <= threshold
-    count, found_labels, found_stats, _ = cv2.connectedComponentsWithStats(ink.view(np.uint8), connectivity=8)
-    labels, stats = np.asarray(found_labels, np.int32), np.asarray(found_stats, np.int32)
-    darkest = _darkest(page.grey, labels, count)
-    dirty = _specks(stats, width_px) | _stains(stats, darkest, width_px) | _holes(stats, width_px, ink.shape)
-    dirty[0] = False
-    if not dirty.any():
-        return page
-    return noted(page, f"dirt taken off: {_counted(int(dirty.sum()))}", _painted_over(page.grey, dirty[labels]))
+    pale = (page.grey <= (threshold + _WHITE) / 2).view(np.uint8)
+    apart_px = max(1, round(width_px))
+    grown = cv2.dilate(pale, np.ones((2 * apart_px + 1, 2 * apart_px + 1), np.uint8))
+    outlines, kinds = cv2.findContours(grown, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
+    outer = [] if kinds is None else [line for line, kind in zip(outlines, kinds[0], strict=True) if kind[3] < 0]
+    boxes = [cv2.boundingRect(outline) for outline in outer]
+    pieces = [_Piece(left, top, wide, high, apart_px) for left, top, wide, high in boxes]
+    dirt = [piece for piece in pieces if piece.is_dirt(page.grey, threshold, width_px)]
+    return noted(page, f"dirt taken off: {_counted(len(dirt))}", _without(page.grey, dirt)) if dirt else page
 
 
-def _darkest(grey: Grey, labels: NDArray[np.int32], count: int) -> NDArray[np.uint8]:
-    """The darkest level of each piece of ink."""
-    inked = labels > 0
-    darkest = np.full(count, 255, np.uint8)
-    np.minimum.at(darkest, labels[inked], grey[inked])
-    return darkest
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A piece of what is darker than paper, with a rim of paper of `apart` px around it: its box in px."""
+
+    left: int
+    top: int
+    wide: int
+    high: int
+    apart: int
+
+    def of(self, grey: Grey) -> Grey:
+        """What lies in the box."""
+        return grey[self.top : self.top + self.high, self.left : self.left + self.wide]
+
+    def is_dirt(self, grey: Grey, threshold: float, width_px: float) -> bool:
+        """Whether no pen has drawn it. Large pieces are not looked at."""
+        side = min(grey.shape)
+        across = max(self.wide, self.high) - 2 * self.apart
+        if across > max(_STAIN_WIDTHS * width_px, _HOLE_SHARE * side):
+            return False
+        inked = self.of(grey) <= threshold
+        rims = (inked[0], inked[-1], inked[:, 0], inked[:, -1])
+        if not inked.any() or (min(inked.shape) > 2 and any(rim.any() for rim in rims) and not self._at_border(grey)):
+            return False
+        wide, high = int(inked.any(axis=0).sum()), int(inked.any(axis=1).sum())
+        if max(wide, high) <= max(1.0, _SPECK_WIDTHS * width_px):
+            return True
+        if across <= _STAIN_WIDTHS * width_px and self.of(grey).min() > _WHITE * (1 - _PALE):
+            return True
+        filled = inked.sum() >= _ROUND * wide * high and max(wide, high) <= _LONGEST * min(wide, high)
+        far = [self.left, self.top, grey.shape[1] - self.left - self.wide, grey.shape[0] - self.top - self.high]
+        return bool(filled and min(wide, high) >= _HOLE_WIDTHS * width_px and min(far) <= _RIM_SHARE * side)
+
+    def _at_border(self, grey: Grey) -> bool:
+        high, wide = grey.shape
+        return self.left == 0 or self.top == 0 or self.left + self.wide == wide or self.top + self.high == high
 
 
-def _specks(stats: NDArray[np.int32], width_px: float) -> NDArray[np.bool_]:
-    longest = stats[:, 2:4].max(axis=1)
-    return np.asarray(longest <= max(1.0, _SPECK_WIDTHS * width_px))
-
-
-def _stains(stats: NDArray[np.int32], darkest: NDArray[np.uint8], width_px: float) -> NDArray[np.bool_]:
-    small = stats[:, 2:4].max(axis=1) <= _STAIN_WIDTHS * width_px
-    return np.asarray(small & (darkest > _WHITE * (1 - _PALE)))
-
-
-def _holes(stats: NDArray[np.int32], width_px: float, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    left, top, wide, high, area = stats[:, :5].T.astype(float)
-    side = min(shape)
-    large = (np.minimum(wide, high) >= _HOLE_WIDTHS * width_px) & (np.maximum(wide, high) <= _HOLE_SHARE * side)
-    filled = (area >= _ROUND * wide * high) & (np.maximum(wide, high) <= 1.3 * np.minimum(wide, high))
-    rim = np.minimum.reduce([left, top, shape[1] - left - wide, shape[0] - top - high])
-    return np.asarray(large & filled & (rim <= _RIM_SHARE * side))
-
-
-def _painted_over(grey: Grey, dirty: Mask) -> Grey:
-    """With its pale rim, which belongs to no other ink."""
-    around = cv2.dilate(dirty.view(np.uint8), np.ones((5, 5), np.uint8)).view(np.bool_)
+def _without(grey: Grey, dirt: list[_Piece]) -> Grey:
     clean = grey.copy()
-    clean[around & (dirty | (grey > _WHITE // 2))] = _WHITE
+    for piece in dirt:
+        piece.of(clean)[:] = _WHITE
     return clean
 
 

@@ -13,6 +13,7 @@ from daemon.shapes import Grey, Homography, PageImage
 
 BEST_PX = 2.5
 NARROWEST_PX, WIDEST_PX = 1.8, 4.0
+"""Blur makes a line of 3 px look wider than 3.5; on a page reduced for it lines that nearly touch would run together."""
 MOST_SIDE_PX = 4096
 
 _CELL_PX = 32
@@ -23,7 +24,7 @@ _LEAST_INK = 0.1
 
 
 def fit_line_width(page: PageImage) -> PageImage:
-    """The page with its line width known, and scaled so that lines come to about 2.5 px unless they are 1.8 to 3.5.
+    """The page with its line width known, and scaled so that lines come to about 2.5 px unless they are 1.8 to 4.
 
     A page without ink comes back as it is. Reduced by area averaging, enlarged by cubic interpolation; `to_given`
     follows, pixel centres at whole numbers. No side is enlarged beyond 4096 px; a page larger than that is reduced

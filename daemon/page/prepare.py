@@ -8,6 +8,7 @@ from daemon.page.light import even_light, flatten_light, spread_tones
 from daemon.page.line_width import fit_line_width
 from daemon.page.ruling import take_off_ruling
 from daemon.page.sheet import straighten
+from daemon.page.working_range import warned_of_contrast, warned_of_size
 from daemon.shapes import PageImage
 
 
@@ -17,7 +18,7 @@ def prepare(page: PageImage) -> PageImage:
     page: upright, as `decode` gives it. Returns a page whose `to_given` leads back to the given picture and whose
     `line_width_px` is known where the page holds ink.
     """
-    return fit_line_width(put_right(page))
+    return fit(put_right(page))
 
 
 def put_right(page: PageImage) -> PageImage:
@@ -25,7 +26,13 @@ def put_right(page: PageImage) -> PageImage:
 
     `to_given` leads back to the given picture. A clean page comes back as it is, bit by bit.
     """
-    return clean_paper(spread_tones(take_off_ruling(even_light(turn_dark(straighten(page))))))
+    bare = take_off_ruling(even_light(turn_dark(straighten(page))))
+    return clean_paper(spread_tones(warned_of_contrast(bare)))
+
+
+def fit(page: PageImage) -> PageImage:
+    """The page put right at the scale at which it is read, its line width known, with what there is to warn of."""
+    return warned_of_size(fit_line_width(page))
 
 
 def even_out(page: PageImage) -> PageImage:
