@@ -121,8 +121,7 @@ class Journal:
                 # There was one machine then, "" stands for it, and nobody has written down why a job was interrupted.
                 for column in ("machine", "reason"):
                     self._rows.execute(f"ALTER TABLE events ADD COLUMN {column} TEXT NOT NULL DEFAULT ''")
-                because = Reason.POSITION_UNKNOWN.value, State.INTERRUPTED.value
-                self._rows.execute("UPDATE events SET reason = ? WHERE state = ?", because)
+                self._rows.execute("UPDATE events SET reason = 'position unknown' WHERE state = 'interrupted'")
             if version == 1:
                 # It did not write down how far a drawing came, so that every stroke of one that was begun is possible.
                 self._rows.execute(
@@ -132,8 +131,7 @@ class Journal:
             self._rows.execute(f"PRAGMA user_version={VERSION}")
 
     def _read(self) -> None:
-        columns = "at_s, job, state, words, machine, reason"
-        rows = self._rows.execute(f"SELECT {columns} FROM events ORDER BY number").fetchall()
+        rows = self._rows.execute("SELECT at_s, job, state, words, machine, reason FROM events ORDER BY number")
         for at_s, job, state, words, machine, reason in rows:
             if job:
                 self._remember(at_s, job, state, words, machine, Reason(reason))
@@ -282,8 +280,7 @@ class Journal:
         return job
 
     def _know(self, job_id: str, strokes: int, certain: int, possible: int) -> Job:
-        known = replace(self._jobs[job_id], strokes=strokes, certain=certain, possible=possible)
-        self._jobs[job_id] = known
+        known = self._jobs[job_id] = replace(self._jobs[job_id], strokes=strokes, certain=certain, possible=possible)
         return known
 
 
@@ -299,5 +296,5 @@ def _back_up(rows: sqlite3.Connection, copy: Path) -> None:
 
 
 def _remedy(error: sqlite3.Error) -> str:
-    read_only = getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_READONLY
-    return "make its folder writable" if read_only else "free the disk"
+    closed = getattr(error, "sqlite_errorcode", 0) & 0xFF in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
+    return "make its folder writable" if closed else "free the disk"

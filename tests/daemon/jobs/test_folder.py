@@ -98,6 +98,26 @@ def test_a_full_disk_leaves_the_picture_in_the_inbox(tmp_path: Path, inbox: Path
     assert list(folders.root.iterdir()) == []
 
 
+@pytest.mark.parametrize("call", ["rename", "mkdir"])
+def test_a_read_only_file_system_leaves_the_picture_in_the_inbox(
+    tmp_path: Path, inbox: Path, monkeypatch: pytest.MonkeyPatch, call: str
+) -> None:
+    """rename: the inbox is read-only; mkdir: the folder of the jobs is."""
+    folders = JobFolders(tmp_path / "jobs")
+    picture = drop(inbox, "a.png")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, call, refuse)
+        with pytest.raises(DiskTrouble, match=r"Read-only file system.*correct its rights"):
+            folders.take(picture)
+    assert picture.read_bytes() == b"picture"
+    assert list(folders.root.iterdir()) == []
+    assert folders.take(picture).endswith("-a")
+
+
 def test_a_copy_that_a_power_cut_broke_off_is_made_again(tmp_path: Path, inbox: Path) -> None:
     folders = JobFolders(tmp_path / "jobs")
     (folders.root / "000001-a").mkdir()

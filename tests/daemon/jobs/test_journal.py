@@ -163,6 +163,25 @@ def test_a_read_only_journal_says_what_to_do(tmp_path: Path) -> None:
             journal.step("1", State.FAILED)
 
 
+def test_a_journal_that_cannot_be_made_says_what_to_do() -> None:
+    with pytest.raises(DiskTrouble, match=r"cannot be opened .*make its folder writable"):
+        Journal(Path("/proc/linedrawd-journal"))
+
+
+def test_a_journal_on_a_file_system_that_became_read_only_still_tells_what_it_knows(tmp_path: Path) -> None:
+    with closing(in_drawing(tmp_path / "j")) as journal:
+        journal._rows.execute("PRAGMA query_only=ON")
+        for write in (
+            lambda: journal.promise("1", strokes=9, certain=0, possible=4),
+            lambda: journal.end_drawing("1", State.DONE, "", certain=9, possible=9),
+            lambda: journal.hold("plotter", "a person stopped it"),
+        ):
+            with pytest.raises(DiskTrouble, match="make its folder writable"):
+                write()
+        assert (journal.jobs()[0].state, journal.jobs()[0].possible) == (State.DRAWING, 0)
+        assert journal.kept.of("plotter").held == "a person stopped it"
+
+
 def test_a_clock_that_jumps_changes_no_order(tmp_path: Path) -> None:
     times = iter([5e9, -7.0, 0.0])
     with closing(Journal(tmp_path / "j", now=lambda: next(times))) as journal:
