@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from random import Random
 
-from daemon.jobs.states import State
+from daemon.jobs.states import UNDER_THE_PEN
 from tests.torture.check import Checks
 from tests.torture.rig import GONE_WITHIN_S, Daemon, Machine, Stuck, await_
 from tests.torture.told import told
@@ -53,9 +53,11 @@ def stop_by_order(bench: Bench) -> None:
     drawn = _drawing(bench)
     if bench.daemon.order("stop") is None:
         bench.checks.found.other["stop"] = "the daemon did not obey a stop"
-    # Also a drawing that began while the order was on its way.
-    _await_over(bench, _drawing(bench))
-    if drawn:  # a power cut before may have left the pen down with nothing to stop
+    # Also one that began while the order was on its way. Where there is none, nobody lifts a pen that an earlier cut
+    # has left down: it is lifted when the next drawing begins.
+    drawn |= _drawing(bench)
+    _await_over(bench, drawn)
+    if drawn:
         _pen_is_up(bench, "a stop")
 
 
@@ -132,7 +134,7 @@ def _gone(bench: Bench) -> None:
 
 
 def _drawing(bench: Bench) -> set[str]:
-    return {job.id for job in told(bench.daemon.journal).values() if job.state is State.DRAWING}
+    return {job.id for job in told(bench.daemon.journal).values() if job.state in UNDER_THE_PEN}
 
 
 def _await_over(bench: Bench, drawn: set[str]) -> None:
