@@ -37,12 +37,14 @@ class Choices:
             raise LinedrawError(f"job {job.id} is {job.state.value}, only a failed one is tried again: say `again`")
         if job.possible:
             raise LinedrawError(f"ink of job {job.id} may be on the sheet ({job.on_paper}): say `linedrawd again`")
+        self._check_machine(job)
         self._desk.step(job.id, State.QUEUED, "a person has it tried again")
         return f"job {job.id} is queued again"
 
     def again(self, job_id: str) -> str:
         """A new job of the same picture, with the same wishes, whatever became of the old one."""
         job = self._desk.find(job_id)
+        self._check_machine(job)
         folder = self._desk.folders.path(job.id)
         source = source_of(folder)
         if source is None:
@@ -50,6 +52,12 @@ class Choices:
         side = folder / SIDE_NAME
         new = self._desk.folders.copy(source, {SIDE_NAME: side.read_bytes()} if side.exists() else None, name=job.name)
         return f"job {self._desk.add(new, job.name, bound_to=job.bound_to)} draws {job.name} once more"
+
+    def _check_machine(self, job: Job) -> None:
+        if job.bound_to not in ("", *self._desk.stations):
+            raise LinedrawError(
+                f"job {job.id} is for the machine {job.bound_to}, which is not set: set it, or drop it anew"
+            )
 
     def resume_from(self, job_id: str, stroke: int) -> str:
         """Go on with an interrupted job from this stroke (from 0) on; the person answers for those before it."""

@@ -18,7 +18,7 @@ import pytest
 
 from daemon.cli.__main__ import main
 from daemon.cli.braille import braille
-from daemon.cli.view import Size, in_words, seconds_left, view
+from daemon.cli.view import Size, in_words, seconds_left, shown, view
 from daemon.status import Status, clock
 from tests.daemon.jobs.test_pen_life import job
 
@@ -85,6 +85,39 @@ def test_the_view_fits_whatever_it_is_told(columns: int, rows: int) -> None:
         plain = STYLES.sub("", row)
         assert "\x1b" not in plain
         assert len(plain.replace("\u0301", "")) <= columns
+
+
+def two_machines() -> dict[str, object]:
+    left = {"state": "held", "words": "no job starts", "held": "stopped", "job": "", "port": "usb://1-1"}
+    right = {
+        "state": "drawing",
+        "job": "000002-b",
+        "picture": "b.png",
+        "percent": 50.0,
+        "words": "",
+        "port": "usb://1-2",
+    }
+    above = {
+        "machine": "left, right",
+        "job": "",
+        "picture": "",
+        "port": "",
+        "words": "left: held, right: drawing b.png",
+    }
+    return said(**above, machines={"left": left, "right": right})
+
+
+def test_of_several_machines_one_is_shown_and_the_others_have_their_rows() -> None:
+    size, both = Size(80, 24, colour=False), two_machines()
+    assert shown(both) == "right"
+    rows = view(both, [SQUARE, SQUARE], [], size, wall_s=NOW_S, runs=True, machine="right")
+    assert rows[:3] == ["left: held   usb://1-1   Grbl 1.1h", "no job starts", "right: drawing   usb://1-2   Grbl 1.1h"]
+    assert rows[3] == "000002-b   b.png"
+    assert any("⡏" in row for row in rows)
+    rows = view(both, [], [], size, wall_s=NOW_S, runs=True, machine="left")
+    assert rows[0] == "right: drawing   usb://1-2   Grbl 1.1h"
+    assert rows[1].startswith("000002-b   b.png    50.0 %")
+    assert rows[2:4] == ["left: held   usb://1-1   Grbl 1.1h", "no job starts"]
 
 
 def test_a_broken_or_empty_status_shows_that_no_daemon_runs() -> None:

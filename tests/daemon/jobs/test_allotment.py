@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 
+from daemon.errors import LinedrawError
 from daemon.jobs.allotment import Allotment
+from daemon.jobs.choices import Choices
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import JobFolders
 from daemon.jobs.journal import Job, Journal
@@ -205,6 +207,10 @@ def test_what_was_planned_for_a_machine_that_is_no_longer_set_is_planned_again(t
     after = two.restarted()
     assert [job.state for job in after.journal.jobs()] == [State.QUEUED, State.QUEUED, State.FAILED]
     assert "set it, then `linedrawd retry 000003-c`" in after.journal.jobs()[2].words
+    choices = Choices(after.desk, placed=lambda machine: False)
+    for choose in (choices.retry, choices.again):
+        with pytest.raises(LinedrawError, match="job 000003-c is for the machine down, which is not set"):
+            choose("3")
     assert after.left.held == "up, which is not set any more, was held (stopped)"
     after.left.go()
     again = after.restarted()
