@@ -6,6 +6,7 @@ import argparse
 import os
 import tomllib
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -33,7 +34,7 @@ def first_run(args: argparse.Namespace) -> int:
     """0 when all of it was done, 1 when a person said that the frame does not lie on the sheet."""
     file = settings_file(args, dict(os.environ))
     asked = _Asked(args, file)
-    answers = asked.answers()
+    answers = replace(asked.answers(), shares=asked.others)
     values: Values = settings_from(answers)
     print(f"\n{lines_of(values)}\n")
     if file.exists() and not args.overwrite and not asked.agrees(f"{file} is there: change these keys in it?", no=True):
@@ -90,6 +91,11 @@ class _Asked:
             words = "where does the sheet's lower left corner lie on the homed machine, X and Y in mm?"
             corner_mm = self._ask("origin_mm", words, corner_mm, _pair)
         return Answers(name, device, url, kind, pen_up, pen_down, sheet_mm, reach_mm, origin, corner_mm)
+
+    @property
+    def others(self) -> bool:
+        """The file tells of more machines than the one that is set up."""
+        return bool(set(self._machines) - {self._args.name or next(iter(self._machines), DEFAULT_MACHINE)})
 
     def text_for(self, answers: Answers) -> str:
         """The file's text; what it says of a machine or a pen of another kind is put behind a #."""

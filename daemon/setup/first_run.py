@@ -15,6 +15,7 @@ MARGIN_MM = 15.0
 class Answers:
     """name: of the machine's section. sheet_mm: as it lies under the pen; None for an arm, which has a box of its own.
 
+    shares: there are other machines, so the box stands in its own section, not in [sheet].
     reach_mm, origin: None where the device does not ask for them. origin_mm: of a homed machine. pen_up, pen_down: mm
     of a pen on Z, S words of a servo.
     """
@@ -29,6 +30,7 @@ class Answers:
     reach_mm: tuple[float, float] | None = None
     origin: Literal["here", "homed"] | None = None
     origin_mm: tuple[float, float] = (0.0, 0.0)
+    shares: bool = False
 
 
 def settings_from(answers: Answers) -> dict[str, dict[str, Any]]:
@@ -44,10 +46,9 @@ def settings_from(answers: Answers) -> dict[str, dict[str, Any]]:
     pen = {"kind": answers.pen, ends[0]: answers.pen_up, ends[1]: answers.pen_down}
     sections = {f"machines.{answers.name}": machine, f"machines.{answers.name}.pen": pen}
     if answers.sheet_mm:
-        sections["sheet"] = {
-            "box_mm": list(_box_mm(answers.sheet_mm, answers.reach_mm)),
-            "box_origin_mm": [MARGIN_MM, MARGIN_MM],
-        }
+        box_mm = list(_box_mm(answers.sheet_mm, answers.reach_mm))
+        box = {"box_mm": box_mm, "box_origin_mm": [MARGIN_MM, MARGIN_MM]}
+        sections[f"machines.{answers.name}" if answers.shares else "sheet"] = (machine if answers.shares else {}) | box
     return sections
 
 

@@ -100,6 +100,14 @@ def test_another_kind_of_machine_takes_over_nothing(file: Path, setup: Run) -> N
     }  # fmt: skip
 
 
+def test_a_second_machine_leaves_the_sheet_of_the_first_alone(file: Path, setup: Run) -> None:
+    file.write_text('[machines.left]\nurl = "/dev/ttyUSB7"\n[sheet]\nbox_mm = [50, 50]\n')
+    words = ["--device", "sim", "--name", "right", "--paper", "A5", "--yes", "--overwrite", *QUICK]
+    assert setup(*words) == 0
+    said = written(file)
+    assert (said["sheet"], said["machines"]["right"]["box_mm"]) == ({"box_mm": [50, 50]}, [118.0, 180.0])
+
+
 def test_settings_that_contradict_each_other_leave_the_file_as_it_was(file: Path, setup: Run) -> None:
     file.write_text("[machines.m]\n")
     words = ["--device", "sim", "--pen-up", "0", "--pen-down", "3", "--yes", "--overwrite", *QUICK]

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.shapes import Points, Stroke, Toolpath
+from daemon.shapes import Arc, Points, Stroke, Toolpath
 from daemon.toolpath.correct import Correction, corrected
+from daemon.toolpath.curves import fitted, points_of
 from firmware_protocol.crooked import Crooked, CrookedInk
 from firmware_protocol.ink import PenRule
 
@@ -101,4 +103,30 @@ def test_a_dot_stays_a_dot() -> None:
     assert [stroke.points.tolist() for stroke in path.strokes] == [
         [pytest.approx([10.15, 10.1])],
         [pytest.approx([4.85, 12.1])],
+    ]
+
+
+@pytest.mark.parametrize("backlash_mm", [(0.0, 0.0), BACKLASH])
+def test_curves_stay_curves(backlash_mm: tuple[float, float]) -> None:
+    turn = np.linspace(0, 2 * math.pi, 181)
+    circle = np.column_stack([50 + 20 * np.cos(turn), 50 + 20 * np.sin(turn)])
+    round_one = fitted(Stroke(circle), error_mm=0.05)
+    meant = Toolpath((round_one,), np.eye(2, 3))
+    path = corrected(meant, Correction(1.03, 0.98, 0.5, backlash_mm))
+    (stroke,) = path.strokes
+    assert stroke.moves is not None
+    assert any(isinstance(move, Arc) for move in stroke.moves)
+    assert len(stroke.moves) < len(stroke.points)
+    # What is sent are the moves, so their own points are drawn.
+    sent = replace(path, strokes=(Stroke(points_of(stroke.points[0], stroke.moves)),))
+    lines = drawn(sent, Crooked(1.03, 0.98, 0.5, backlash_mm))
+    assert farthest_mm(lines, [circle]) < 0.05 + 0.02 + 0.02
+
+
+def test_a_corner_between_curves_stays_one() -> None:
+    square = fitted(Stroke(np.array([[10, 10], [40, 10], [40, 40], [10, 40], [10, 10]], float)), error_mm=0.05)
+    (stroke,) = corrected(Toolpath((square,), np.eye(2, 3)), Correction(1.01)).strokes
+    assert stroke.moves is not None
+    assert [move.end for move in stroke.moves] == [
+        pytest.approx(end) for end in [(40 / 1.01, 10), (40 / 1.01, 40), (10 / 1.01, 40), (10 / 1.01, 10)]
     ]
