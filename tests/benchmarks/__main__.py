@@ -1,4 +1,4 @@
-"""Every benchmark, one after the other: `python -m tests.benchmarks [stages] [arcs] [streaming] [done] [memory]`."""
+"""Every benchmark, one after the other: `python -m tests.benchmarks [stages] [arcs] [streaming] [memory] ...`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,18 @@ os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "ORT_DISABLE
 
 
 def main() -> None:
-    from tests.benchmarks import arcs, dobot, done, memory, stages, streaming  # noqa: PLC0415
+    from tests.benchmarks import (  # noqa: PLC0415
+        arcs,
+        dobot,
+        done,
+        jitter,
+        latency,
+        memory,
+        sheets,
+        stages,
+        streaming,
+        upkeep,
+    )
 
     known = {
         "stages": stages.show,
@@ -19,6 +30,10 @@ def main() -> None:
         "dobot": dobot.show,
         "done": done.show,
         "memory": memory.show,
+        "sheets": sheets.show,
+        "latency": latency.show,
+        "jitter": jitter.show,
+        "upkeep": upkeep.show,
     }
     wanted = sys.argv[1:] or list(known)
     if unknown := set(wanted) - known.keys():
