@@ -82,7 +82,7 @@ class Card:
         for axis, across_mm in ((0, self.height_mm), (1, self.width_mm)):
             for far in (False, True):
                 yield self._row(axis, 1, _mirrored(_THERE_MM, across_mm) if far else _THERE_MM)
-                yield self._row(axis, -1, _mirrored(_BACK_MM, across_mm) if far else _BACK_MM)[1:]
+                yield self._row(axis, -1, _mirrored(_BACK_MM, across_mm) if far else _BACK_MM)
 
     def _row(self, axis: int, way: Literal[1, -1], ends_mm: tuple[float, float]) -> Sequence[Mark]:
         along_mm = (self.width_mm, self.height_mm)[axis]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -13,7 +14,7 @@ from firmware_protocol.ink import PenRule, Polyline
 def drawn(crooked: Crooked, *points: tuple[float, float]) -> list[Polyline]:
     """By a pen that is down from the first point on."""
     ink = CrookedInk(PenRule(), crooked)
-    for start, end in zip(points, points[1:], strict=False):
+    for start, end in pairwise(points):
         ink.travel((*start, 0.0), (*end, 0.0))
     return ink.polylines
 
@@ -40,6 +41,7 @@ def test_a_copy_draws_on_without_changing_the_first() -> None:
     other = ink.copy()
     other.travel((10, 0, 0), (9, 0, 0))
     assert len(ink.polylines[0]) < len(other.polylines[0])
+    assert max(x for x, _ in other.polylines[0]) == pytest.approx(9.8)
     other.travel((9, 0, 0), (8, 0, 0))
     ink.travel((10, 0, 0), (11, 0, 0))
     assert ink.polylines[0][-1] == pytest.approx((10.8, 0))

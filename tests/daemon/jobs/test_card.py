@@ -72,7 +72,7 @@ def test_a_crooked_machine_draws_straight_once_its_card_was_looked_at(
     assert main(["calibrate", str(tmp_path / "scan.png"), "--config", str(file)]) == 0
     said = capsys.readouterr().out
     assert "X is drawn 1.20 % too long" in said
-    assert "76 of its 76 marks" in said
+    assert "80 of its 80 marks" in said
     assert (tmp_path / "scan-marks.png").exists()
     assert (tmp_path / "linedrawd.toml.before").read_text() == before
     after = load_settings(Options(config=file, state_dir=tmp_path / "state"), environment={"HOME": str(tmp_path)})
@@ -92,7 +92,7 @@ def test_a_check_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[st
     before = (tmp_path / "linedrawd.toml").read_text()
     picture, file = str(tmp_path / "scan.png"), str(tmp_path / "linedrawd.toml")
     assert main(["calibrate", picture, "--config", file, "--check"]) == 0
-    assert "the farthest mark lies 0.47 mm from where it should" in capsys.readouterr().out
+    assert "the farthest mark lies 0.50 mm from where it should" in capsys.readouterr().out
     assert (tmp_path / "linedrawd.toml").read_text() == before
 
 

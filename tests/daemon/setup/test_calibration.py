@@ -109,6 +109,13 @@ def test_a_photo_from_the_side_is_refused_where_nothing_undoes_it() -> None:
         errors_of(found, px_to_mm=by_known_width(found, to_px, WIDE, WIDE.width_mm))
 
 
+def test_a_frame_that_the_pen_left_open_is_one_all_the_same() -> None:
+    grey = scanned(card_drawn_by(CARD, MACHINES[1]), turned_deg=0.0)
+    bottom_px = round((SHEET_MM[1] - 40) * PX_PER_MM)
+    grey[bottom_px - 60 : bottom_px + 60, 400:480] = 232
+    assert is_about(errors_in(grey), MACHINES[1])
+
+
 def test_a_picture_without_a_card_is_refused() -> None:
     for picture in (np.full((600, 400), 230, np.uint8), scanned([[(20.0, 20.0), (80.0, 90.0)]])):
         with pytest.raises(BadPicture, match="--card"):
