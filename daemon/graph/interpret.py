@@ -27,12 +27,14 @@ from daemon.graph.straight import equations_alone, straight_edges
 from daemon.graph.trace import unexplained
 from daemon.graph.verdicts import Candidates, Origins, Reasons, reasons
 from daemon.graph.vertices import centroids, corner_vertices
-from daemon.ink import Mask, ink_mask, thin
+from daemon.ink import Mask, ink_mask
 from daemon.shapes import Edge, Grey, LineGraph, Map, PageImage, Points, Segmentation
 
 _SIMPLIFIED_PX = 0.04
 _ROUNDING_PX = 1e-3
 _LEAST_SPECK_PX = 3
+_USUAL_PX = 2.5
+"""Line width of a page on which nobody has estimated it: what pages are scaled to."""
 _ROUNDS = 4
 
 Floats32: TypeAlias = NDArray[np.float32]
@@ -104,20 +106,13 @@ def _ink_of(page: PageImage) -> _Ink:
     mask = ink_mask(page.grey)
     _, labels, stats, centres = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)
     areas = stats[:, cv2.CC_STAT_AREA]
-    width_px = page.line_width_px or _width_px(mask)
+    width_px = page.line_width_px or _USUAL_PX
     dirt = areas < _LEAST_SPECK_PX
     dots = ~dirt & (stats[:, 2:4].max(axis=1) <= 1.5 * width_px + 1.0)
     dots[0] = dirt[0] = False
     lines = mask & ~(dots | dirt)[labels]
     middles = np.asarray(centres[dots], np.float64).reshape(-1, 2)
     return _Ink(lines, middles, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask))
-
-
-def _width_px(mask: Mask) -> float:
-    """Full width of the line: the ink's area by the length of its centre line."""
-    centre = thin(mask)
-    # A step along a row is 1 px, along a diagonal 1.41: a tenth more than the pixels is right in the mean.
-    return float(max(1.0, mask.sum() / max(1.0, 1.1 * centre.sum())))
 
 
 def _levels(grey: Grey, mask: Mask) -> Floats32:

@@ -35,7 +35,7 @@ from daemon.program.file import program_text
 from daemon.program.svg import write_svg
 from daemon.report import canvas
 from daemon.report.explain import explain
-from daemon.report.fidelity import Fidelity, fidelity, line_width_px
+from daemon.report.fidelity import Fidelity, fidelity
 from daemon.report.preview import preview
 from daemon.report.report import executed_report, from_json, planned_report, to_json
 from daemon.shapes import Affine, Drawing, Homography, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
@@ -81,7 +81,7 @@ def plan_picture(
         estimated_s = seconds_of(program, settings.machines[machine])
     with stages("report"):
         _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, (page, segmentation, graph, on_page))
-        width_px = line_width_px(readable.grey)
+        width_px = _width_px(page, readable)
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
         planned = planned_report(
             (readable, page), graph, toolpath, found,
@@ -102,7 +102,7 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
         raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
     readable = put_right(decode(source, max_megapixels=settings.intake.max_megapixels))
     drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
-    found = _fidelity_mm(readable, drawn, np.array(planned.from_px), line_width_px(readable.grey))
+    found = _fidelity_mm(readable, drawn, np.array(planned.from_px), planned.line_width_px)
     executed = executed_report(planned, found, real_s=planned.real_s or 0.0)
     write_durably(folder / "report.json", to_json(executed).encode())
 
@@ -139,6 +139,11 @@ def drawing_on_readable(drawing: Drawing, page: PageImage, readable: PageImage) 
     height_px, width_px = readable.grey.shape
     back = np.linalg.inv(readable.to_given) @ page.to_given
     return Drawing(_moved(drawing, back), width_px, height_px, readable.px_per_mm)
+
+
+def _width_px(page: PageImage, readable: PageImage) -> float:
+    """Full width of the lines on the page put right; 1 where it holds none."""
+    return max(1.0, (page.line_width_px or 0.0) * given_px(page) / given_px(readable))
 
 
 def _moved(drawing: Drawing, to: Homography) -> tuple[Stroke, ...]:

@@ -13,7 +13,7 @@ from daemon.shapes import Grey, Homography, PageImage
 
 BEST_PX = 2.5
 NARROWEST_PX, WIDEST_PX = 1.8, 4.0
-"""Blur makes a line of 3 px look wider than 3.5; on a page reduced for it lines that nearly touch would run together."""
+"""Blur makes a line of 3 px look wider than 3.5; reduced for that, lines that nearly touch would run together."""
 MOST_SIDE_PX = 4096
 
 _CELL_PX = 32
@@ -59,21 +59,31 @@ def line_width_px(grey: Grey) -> float | None:
 def _cell_widths(grey: Grey, found: Tones, cell_px: int) -> tuple[float, float]:
     """The median and the usual width of all cells; band by band, so that memory does not grow with the page."""
     padded = np.pad(grey, 1, mode="constant", constant_values=255)
-    cells = [_band(padded[top : top + cell_px + 1], found, cell_px) for top in range(0, len(padded) - 1, cell_px)]
-    area, outline = np.concatenate(cells, axis=1)
-    # A cell may see the rim of its neighbour's ink and hold none.
+    bands = [_band(padded[top : top + cell_px + 1], found, cell_px) for top in range(0, len(padded) - 1, cell_px)]
+    area, outline, above = np.stack(bands, axis=1)
+    outline[:-1] += above[1:]
     held = (outline > 0) & (area > 0)
     return _usual(2 * area[held] / outline[held], outline[held])
 
 
 def _band(rows: Grey, found: Tones, cell_px: int) -> NDArray[np.float64]:
-    """Ink and outline of each cell of a band, (2, N): the rows and one row and column above and left of them."""
+    """Ink and outline of each cell of a band, and outline of the cells above, (3, N).
+
+    rows: of the band, and one row and one column above and left of them. A piece of outline belongs to the darkest of
+    its pixels: along the rim between two cells all of a line may lie in one of them.
+    """
     ink = np.clip((found.paper - rows.astype(np.float32)) / (found.paper - found.full_ink), 0.0, 1.0)
     ink[ink < _LEAST_INK] = 0.0
     outline = np.hypot(np.diff(ink, axis=1)[1:], np.diff(ink, axis=0)[:, 1:])
-    inner = ink[1:, 1:]
-    starts = np.arange(0, inner.shape[1], cell_px)
-    return np.stack([np.add.reduceat(sums, starts) for sums in (inner.sum(axis=0), outline.sum(axis=0))]).astype(float)
+    here, left, over = ink[1:, 1:], ink[1:, :-1], ink[:-1, 1:]
+    to_left, to_above = (left > here) & (left >= over), (over > here) & (over > left)
+    own = np.zeros_like(ink)
+    own[1:, 1:] = np.where(to_left | to_above, 0.0, outline)
+    own[1:, :-1] += np.where(to_left, outline, 0.0)
+    own[:-1, 1:] += np.where(to_above, outline, 0.0)
+    starts = np.arange(0, here.shape[1], cell_px)
+    sums = (here.sum(axis=0), own[1:, 1:].sum(axis=0), own[0, 1:])
+    return np.stack([np.add.reduceat(each, starts) for each in sums]).astype(float)
 
 
 def _usual(widths: NDArray[np.float64], weights: NDArray[np.float64]) -> tuple[float, float]:

@@ -9,10 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bands import bands
 from daemon.ink import Mask, ink_mask, thin
 from daemon.report.places import Place, places
-from daemon.shapes import Grey, PageImage, Points
+from daemon.shapes import PageImage, Points
 
 RECALL_WITHIN_PX = 1.5
 _HALO_PX = 128
@@ -60,33 +59,6 @@ def fidelity(page: PageImage, strokes: Sequence[Points], *, line_width_px: float
     not_on_ink = places(_without(drawn, grown_ink), longer_than_px=2 * line_width_px)
     not_drawn = places(_without(ink, _grown(drawn)), longer_than_px=2 * line_width_px)
     return Fidelity(precision, recall, f1, overlap, not_drawn, not_on_ink)
-
-
-def line_width_px(grey: Grey) -> float:
-    """Full width of the pen line on a page, estimated: inked area by length of centre line, in px, at least 1.
-
-    grey: uint8 (H, W). Filled areas are no lines: twice the median distance from the centre line to the paper bounds
-    the estimate.
-    """
-    ink = ink_mask(grey)
-    centre = thin(ink)
-    if not centre.any():
-        return 1.0
-    bound = 2.0 * float(np.median(_to_paper_px(ink, centre)))
-    return max(1.0, min(float(ink.sum()) / _length(centre), bound))
-
-
-def _to_paper_px(ink: Mask, centre: Mask) -> NDArray[np.float32]:
-    """How far each pixel of the centre line is from paper, band by band: distances of a whole page are large.
-
-    In ink that is wider than two halos a distance may come out greater than it is, but not below a halo.
-    """
-    found = []
-    for band in bands(len(ink), halo_px=_HALO_PX):
-        framed = np.pad(ink[band.seen].view(np.uint8), 1)
-        distance = cv2.distanceTransform(framed, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
-        found.append(distance[band.own_of_seen][centre[band.own]])
-    return np.concatenate(found)
 
 
 def within(strokes: Sequence[Points], shape: tuple[int, ...], radius_px: float) -> Mask:
@@ -175,17 +147,3 @@ def _samples_of(strokes: Sequence[Points], step_px: float, dot_px: float) -> tup
     dots = np.concatenate([np.zeros(0, bool), *(np.full(max(1, len(s) - 1), s.shape[0] == 1) for s in strokes)])
     share = np.where(dots, dot_px, lengths) / (counts - 1)
     return start + (end - start) * part[:, None], weight * np.repeat(share, counts)
-
-
-def _length(centre: Mask) -> float:
-    """Length in px of a line one pixel wide: steps to the side count 1, diagonal ones that cut no corner sqrt(2)."""
-    straight = diagonal = 0
-    # Each band once, with the row below it.
-    for band in bands(len(centre)):
-        c = np.pad(centre[band.own.start : band.own.stop + 1], ((0, 0), (1, 1)))
-        here = c[: band.own.stop - band.own.start]
-        straight += int((here[:, 1:] & here[:, :-1]).sum() + (c[1:] & c[:-1]).sum())
-        down = c[1:, 1:] & c[:-1, :-1] & ~c[1:, :-1] & ~c[:-1, 1:]
-        up = c[:-1, 1:] & c[1:, :-1] & ~c[1:, 1:] & ~c[:-1, :-1]
-        diagonal += int(down.sum() + up.sum())
-    return max(1.0, float(straight + np.sqrt(2) * diagonal))

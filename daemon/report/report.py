@@ -25,7 +25,7 @@ class Report:
     page_width_px: int
     page_height_px: int
     line_width_px: float
-    """Full width of the lines in the given picture."""
+    """Full width of the lines on the page put right, before it is scaled."""
     vertices: int
     edges: int
     strokes: int

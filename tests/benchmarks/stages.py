@@ -17,7 +17,7 @@ from daemon.page.prepare import prepare
 from daemon.program.gcode import ZPen, write_gcode
 from daemon.report import canvas
 from daemon.report.explain import explain
-from daemon.report.fidelity import fidelity, line_width_px
+from daemon.report.fidelity import fidelity
 from daemon.report.preview import preview
 from daemon.toolpath.place import Layout
 from daemon.toolpath.plan import plan_toolpath
@@ -88,7 +88,7 @@ def planned(picture: Path, segmenter: Segmenter, watch: Stopwatch) -> str:
     program = watch("program", lambda: write_gcode(toolpath, pen=ZPen(up_mm=5, down_mm=0), draw_mm_s=20))
     times_s = watch("estimate", lambda: line_times_s([line.text for line in program.lines]))
     lines = [stroke.points for stroke in drawing.strokes]
-    found = watch("fidelity", lambda: fidelity(page, lines, line_width_px=line_width_px(page.grey)))
+    found = watch("fidelity", lambda: fidelity(page, lines, line_width_px=page.line_width_px or 1.0))
     watch("explain", lambda: canvas.png(explain(page, segmentation, graph, drawing, name="page.png")))
     watch("preview", lambda: canvas.png(preview(toolpath, box_mm=_BOX_MM, box_origin_mm=_CORNER_MM)))
     return (

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from daemon.graph.vertices import DISC
+from daemon.page.line_width import line_width_px
 from daemon.shapes import Drawing, Edge, LineGraph, PageImage, Points, Segmentation
 
 Lines = list[list[tuple[float, float]]]
@@ -19,7 +20,7 @@ def page(lines: Lines, *, size: int = 128, width_px: int = 2) -> PageImage:
     for line in lines:
         points = np.rint(np.array(line) * 256).astype(np.int32)
         cv2.polylines(grey, [points], False, 0, width_px, cv2.LINE_AA, 8)
-    return PageImage(grey, np.eye(3), size, size, "")
+    return PageImage(grey, np.eye(3), size, size, "", line_width_px=line_width_px(grey))
 
 
 def channels(drawn: PageImage, corners: Sequence[tuple[float, float]]) -> Segmentation:

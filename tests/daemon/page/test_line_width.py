@@ -27,6 +27,14 @@ def test_the_width_of_a_marker_is_found(width_px: float) -> None:
     assert line_width_px(grey) == pytest.approx(width_px, rel=0.1)
 
 
+@pytest.mark.parametrize("first", range(28, 36))
+def test_a_square_has_its_width_wherever_it_lies(first: int) -> None:
+    grey = np.full((128, 128), 255, np.uint8)
+    grey[first : first + 68, first : first + 68] = 0
+    grey[first + 3 : first + 65, first + 3 : first + 65] = 255
+    assert line_width_px(grey) == pytest.approx(3, rel=0.4)
+
+
 def test_grain_changes_the_width_little() -> None:
     assert line_width_px(grain(drawn(width_px=3), 6)) == pytest.approx(3, rel=0.1)
 

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from daemon.report.fidelity import fidelity, line_width_px, within
+from daemon.report.fidelity import fidelity, within
 from daemon.report.places import Place, places
 from daemon.shapes import Grey, PageImage, Points
 
@@ -118,21 +118,6 @@ def test_a_line_is_redrawn_as_wide_as_stated() -> None:
     for width_px in (1.0, 2.5, 6.0, 20.0):
         area = within([slant], (200, 200), width_px / 2).sum()
         assert area == pytest.approx(np.hypot(160, 90) * width_px + np.pi * width_px**2 / 4, rel=0.06)
-
-
-@pytest.mark.parametrize("width_px", [1, 2, 3, 5, 9])
-def test_the_line_width_is_estimated_from_the_ink(width_px: int) -> None:
-    assert line_width_px(inked(SQUARE + 0.3, width_px=width_px).grey) == pytest.approx(width_px, abs=0.7)
-
-
-def test_a_filled_area_is_not_taken_for_a_line_width() -> None:
-    grey = inked(SQUARE, SQUARE * 0.5 + [5, 5]).grey.copy()
-    grey[60:140, 60:140] = 0
-    assert line_width_px(grey) < 5
-
-
-def test_the_line_width_of_an_empty_page_is_one() -> None:
-    assert line_width_px(inked().grey) == 1.0
 
 
 def test_ink_that_was_not_drawn_is_named_with_its_place() -> None:
