@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -15,19 +14,13 @@ from daemon.intake.inbox import readable
 from daemon.intake.side import Wishes, parse, read_bytes
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
 from daemon.jobs.desk import Desk
-from daemon.jobs.folder import source_of
+from daemon.jobs.folder import free_bytes, source_of
 from daemon.jobs.record import read_record
 from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME, machines_for, with_wishes
 
 _TWIN = "the same picture as job {twin} (duplicates = 'skip'): `linedrawd again {twin}` draws it anew"
 _NOT_DRAWN = (State.FAILED, State.CANCELLED, State.INTERRUPTED)
-
-
-def free_bytes(folder: Path) -> int:
-    """What may still be written on the disk of this folder."""
-    disk = os.statvfs(folder)
-    return disk.f_bavail * disk.f_frsize
 
 
 class Arrivals:

@@ -33,6 +33,12 @@ def make_folder(folder: Path) -> Path:
     return folder
 
 
+def free_bytes(folder: Path) -> int:
+    """What may still be written on the disk of this folder."""
+    disk = os.statvfs(folder)
+    return disk.f_bavail * disk.f_frsize
+
+
 def source_of(folder: Path) -> Path | None:
     """The picture of a job, None where it has not arrived."""
     return next((path for path in folder.glob("source*") if path.suffix != PART), None)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from daemon.errors import BadPicture, LinedrawError, OutOfReach, PlanningFailed
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from daemon.errors import BadPicture, DiskTrouble, LinedrawError, OutOfReach, PlanningFailed
 from daemon.jobs.allotment import Allotment
-from daemon.jobs.desk import Desk
-from daemon.jobs.folder import source_of
+from daemon.jobs.desk import DISK_RETRY_S, Desk
+from daemon.jobs.folder import free_bytes, source_of
 from daemon.jobs.journal import Job
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
@@ -16,12 +20,24 @@ IDLE_S = 60.0
 class Planning:
     """One turn plans one picture. A picture that cannot be planned fails alone."""
 
-    def __init__(self, desk: Desk, pool: Pool, allotment: Allotment) -> None:
-        self._desk, self._pool, self._allotment = desk, pool, allotment
+    def __init__(
+        self,
+        desk: Desk,
+        pool: Pool,
+        allotment: Allotment,
+        *,
+        now: Callable[[], float] = time.monotonic,
+        free: Callable[[Path], int] = free_bytes,
+    ) -> None:
+        self._desk, self._pool, self._allotment, self._now, self._free = desk, pool, allotment, now, free
         self._tried: set[str] = set()
+        self._not_before_s = float("-inf")
+        """Nothing is planned until then: a disk that was full a moment ago is full."""
 
     def turn(self) -> float:
         """Returns the seconds to wait for a change before the next turn."""
+        if self._now() < self._not_before_s:
+            return self._not_before_s - self._now()
         job = self._allotment.begin()
         if job is None:
             return IDLE_S
@@ -38,15 +54,28 @@ class Planning:
         return 0.0
 
     def _again(self, job: Job, error: LinedrawError) -> bool:
-        """Another machine may reach farther; a worker that died may have died of something else than this picture."""
+        """Another machine may reach farther; a worker that died may have died of something else than this picture.
+
+        A full disk is waited for, for no picture could be planned; one that takes nothing for another reason, as a
+        folder of wrong rights does, is tried once more.
+        """
         if isinstance(error, OutOfReach):
             return self._allotment.too_far(job)
         dropped = self._desk.is_cancelled(job.id) or bool(self._desk.only)
-        if not isinstance(error, PlanningFailed) or job.id in self._tried or dropped:
+        if not isinstance(error, PlanningFailed | DiskTrouble) or job.id in self._tried or dropped:
             return False
-        self._tried.add(job.id)
-        self._desk.step(job.id, State.QUEUED, f"{error}; it is tried once more")
+        full = isinstance(error, DiskTrouble) and self._full()
+        if not full:
+            self._tried.add(job.id)
+        if isinstance(error, DiskTrouble):
+            self._not_before_s = self._now() + DISK_RETRY_S
+            self._desk.trouble(str(error), job=job.id)
+        words = "it is planned again when there is room" if full else "it is tried once more"
+        self._desk.step_at_last(job.id, State.QUEUED, f"{error}; {words}")
         return True
+
+    def _full(self) -> bool:
+        return self._free(self._desk.folders.root) < self._pool.settings.keep.free_mb * 1e6
 
     def _plan(self, job: Job) -> None:
         folder = self._desk.folders.path(job.id)

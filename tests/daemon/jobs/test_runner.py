@@ -9,6 +9,8 @@ from threading import Thread
 import pytest
 
 from daemon.errors import MachineFault, NoMachine
+from daemon.jobs.desk import DISK_RETRY_S
+from daemon.jobs.planning import Planning
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
 from daemon.machine.open import LISTEN_S
@@ -202,13 +204,38 @@ def test_a_trouble_that_stays_is_said_once(bench: Bench) -> None:
     assert [words for words, _ in bench.said].count("the disk is full: free it") == 2
 
 
-def test_a_full_disk_while_a_job_is_written_loses_no_picture(bench: Bench) -> None:
+def with_a_disk(bench: Bench, *, free_mb: float) -> None:
+    bench.planning = Planning(
+        bench.desk, bench.pool, bench.allotment, now=lambda: bench.now_s, free=lambda folder: int(free_mb * 1e6)
+    )
+
+
+def test_a_full_disk_is_waited_for_by_every_picture(bench: Bench) -> None:
+    with_a_disk(bench, free_mb=1.0)
+    job = bench.drop("fill.png", "fill")
+    bench.drop("good.png")
+    for _ in range(4):
+        bench.planning.turn()
+        assert 0.0 < bench.planning.turn() <= DISK_RETRY_S
+        bench.now_s += DISK_RETRY_S
+    assert bench.states() == ["queued", "queued"]
+    assert "free the disk" in str(bench.shown["last_error"])
+    (bench.desk.folders.path(job) / "source.png").write_text("good")
+    bench.planning.turn()
+    bench.planning.turn()
+    assert bench.states() == ["planned", "planned"]
+
+
+def test_a_folder_that_takes_nothing_fails_alone_after_another_try(bench: Bench) -> None:
+    with_a_disk(bench, free_mb=1e6)
     bench.drop("fill.png", "fill")
     bench.drop("good.png")
-    bench.planning.turn()
+    for state in ("queued", "failed"):
+        bench.planning.turn()
+        assert bench.states() == [state, "queued"]
+        bench.now_s += DISK_RETRY_S
     bench.planning.turn()
     assert bench.states() == ["failed", "planned"]
-    assert "free the disk" in str(bench.shown["last_error"])
     assert (bench.desk.folders.path("000001-fill") / "source.png").exists()
 
 
