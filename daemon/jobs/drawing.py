@@ -255,7 +255,9 @@ class Drawing:
         cancelled = self._desk.is_cancelled(job.id)
         goes_on_knowing, touched = known and not self._desk.ending, ended.strokes_possible > 0
         state, reason = outcome_of(ended.verdict, touched=touched, cancelled=cancelled, position_known=goes_on_knowing)
-        if not self.station.held:
+        if self.station.held:
+            self.station.show_held()  # the last lines that were drawn have said otherwise meanwhile
+        else:
             self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=state in (State.CANCELLED, State.DONE))
         extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)
         if state is State.INTERRUPTED:

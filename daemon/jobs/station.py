@@ -77,7 +77,7 @@ class Station:
             if name not in self.desk.stations and not kept.knows(self.name):
                 self.hold(f"{name}, which is not set any more, was held ({why})")
         if self.held:
-            self._show_held()
+            self.show_held()
 
     def may_take(self, job: Job) -> bool:
         """It, or a machine that is set alike, is the one that the job was planned for."""
@@ -94,7 +94,7 @@ class Station:
             self._set_free(not (ready or self.desk.ending or self.held or self.wants_a_sheet))
             if self.desk.ending or self.held or not ready:
                 return None
-            if self.wants_a_sheet:
+            if self.wants_a_sheet and not ready[0].possible:
                 self.let_wait(f"waiting for a new sheet: put one in and say {self.command('next')}")
                 return None
             return self._begin(ready[0])
@@ -111,7 +111,9 @@ class Station:
         self.desk.wake()
 
     def _ready(self) -> list[Job]:
-        return [job for job in self.desk.worked_on(*READY) if self.may_take(job)]
+        """What goes on with a drawing comes first: its sheet lies under the pen."""
+        mine = [job for job in self.desk.worked_on(*READY) if self.may_take(job)]
+        return sorted(mine, key=lambda job: not job.possible)
 
     def _begin(self, job: Job) -> Job | None:
         begun = replace(job, state=State.DRAWING, machine=self.name)
@@ -147,10 +149,11 @@ class Station:
             self.desk.journal.hold(self.name, words)
         except DiskTrouble as error:
             self.trouble(str(error))
-        self.say(self._show_held(), level=logging.WARNING)
+        self.say(self.show_held(), level=logging.WARNING)
         self.desk.wake()
 
-    def _show_held(self) -> str:
+    def show_held(self) -> str:
+        """Returns what is shown."""
         words = f"no job starts until a person says {self.command('go')}: {self.held}"
         self.show(state="held", words=words, held=self.held)
         return words

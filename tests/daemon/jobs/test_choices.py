@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from daemon.errors import LinedrawError
 from daemon.jobs.choices import Choices
 from daemon.jobs.orders import MachineOrder
+from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
 from firmware_protocol.session import Ended, Verdict
 from tests.daemon.jobs.bench import Bench, fault
@@ -92,6 +95,19 @@ def test_a_job_goes_on_from_the_stroke_that_a_person_names(bench: Bench, choices
         "G21 G90", "G0 Z5", "G0 X1 Y5", "G1 Z0 F600", "G1 X9 Y5 F1200", "G0 Z5", "G0 X0 Y0",
     ]  # fmt: skip
     assert (bench.machine.opened, bench.machine.closed) == (1, 0)
+
+
+def test_a_job_goes_on_upon_the_sheet_that_is_in_and_before_all_others(tmp_path: Path, shared_pool: Pool) -> None:
+    bench = Bench(tmp_path, asks_for_sheets=True, pool=shared_pool)
+    interrupted(bench, known=True)
+    bench.desk._rank = lambda name: name
+    bench.planned("0 goes before it.png")
+    Choices(bench.desk, placed=bench.runner.placed).resume_from("1", 1)
+    bench.drawing.turn()
+    bench.drawing.turn()
+    assert (bench.states(), bench.machine.drawn) == (["done", "waiting"], 2)
+    assert "waiting for a new sheet" in bench.words()
+    bench.journal.close()
 
 
 def test_the_ink_of_both_parts_is_measured_together(bench: Bench, choices: Choices) -> None:

@@ -21,7 +21,7 @@ from daemon.jobs.states import Reason, State, meaning_of
 from daemon.machine.open import OpenedMachine
 from daemon.machine.simulated import SimulatedTransport
 from daemon.shapes import Program
-from firmware_protocol.session import Ended, Event, Verdict
+from firmware_protocol.session import Accepted, Ended, Event, Verdict
 from tests.daemon.jobs.bench import Bench, fault
 from tests.daemon.jobs.test_journal import full_disk
 
@@ -244,3 +244,16 @@ def test_a_state_has_no_reason_that_the_table_lacks(bench: Bench) -> None:
     with pytest.raises(ValueError, match="not done for the reason 'door'"):
         bench.journal.end_drawing("000001-a", State.DONE, "", certain=2, possible=2, reason=Reason.DOOR)
     assert of(bench) == (State.DRAWING, Reason.NONE)
+
+
+def test_the_status_says_held_when_a_stopped_drawing_has_ended(bench: Bench) -> None:
+    def stop() -> None:
+        bench.runner.stop()
+        bench.machine.heard(Accepted(1))
+
+    bench.machine.while_drawing = stop
+    bench.machine.endings = [Ended(Verdict.STOPPED, 1, 1, True, True, "stopped")]
+    bench.planned()
+    bench.drawing.turn()
+    assert bench.shown["state"] == "held"
+    assert "a person stopped the machine" in bench.shown["words"]
