@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from random import Random
 
-from daemon.jobs.states import UNDER_THE_PEN
+from daemon.jobs.states import UNDER_THE_PEN, State
 from tests.torture.check import Checks
 from tests.torture.rig import GONE_WITHIN_S, Daemon, Machine, Stuck, await_
 from tests.torture.told import told
@@ -40,24 +40,26 @@ def kill_the_worker(bench: Bench) -> None:
 
 
 def end_in_order(bench: Bench) -> None:
+    drawn, begun = _drawing(bench), _begun(bench)
     bench.daemon.signal(signal.SIGTERM)
     code = bench.daemon.code()
     if code != 0:
         bench.checks.found.other[f"code {code}"] = f"SIGTERM ended the daemon with code {code}, not 0"
     _gone(bench)
-    _pen_is_up(bench, "SIGTERM")
+    # As for a stop: a machine that an earlier cut has locked with its pen down lifts it when it homes.
+    if drawn or _begun(bench) != begun:
+        _pen_is_up(bench, "SIGTERM")
     _start_again(bench)
 
 
 def stop_by_order(bench: Bench) -> None:
-    drawn = _drawing(bench)
+    drawn, begun = _drawing(bench), _begun(bench)
     if bench.daemon.order("stop") is None:
         bench.checks.found.other["stop"] = "the daemon did not obey a stop"
-    # Also one that began while the order was on its way. Where there is none, nobody lifts a pen that an earlier cut
-    # has left down: it is lifted when the next drawing begins.
-    drawn |= _drawing(bench)
-    _await_over(bench, drawn)
-    if drawn:
+    _await_over(bench, _drawing(bench))
+    # Also after one that began while the order was on its way. Where there is none, nobody lifts a pen that an earlier
+    # cut has left down: it is lifted when the next drawing begins.
+    if drawn or _begun(bench) != begun:
         _pen_is_up(bench, "a stop")
 
 
@@ -135,6 +137,11 @@ def _gone(bench: Bench) -> None:
 
 def _drawing(bench: Bench) -> set[str]:
     return {job.id for job in told(bench.daemon.journal).values() if job.state in UNDER_THE_PEN}
+
+
+def _begun(bench: Bench) -> int:
+    """How many drawings have been begun since the first start."""
+    return sum(job.states.count(State.DRAWING) for job in told(bench.daemon.journal).values())
 
 
 def _await_over(bench: Bench, drawn: set[str]) -> None:
