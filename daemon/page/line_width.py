@@ -12,8 +12,9 @@ from daemon.page.tones import Tones, tones
 from daemon.shapes import Grey, Homography, PageImage
 
 BEST_PX = 2.5
-NARROWEST_PX, WIDEST_PX = 1.8, 4.0
-"""Blur makes a line of 3 px look wider than 3.5; reduced for that, lines that nearly touch would run together."""
+NARROWEST_PX, WIDEST_PX = 1.8, 3.5
+_SMALL_PX, _WIDEST_OF_SMALL_PX = 512, 4.0
+"""A small picture has no resolution to spare: blur makes its lines look wide, and reduced they would run together."""
 MOST_SIDE_PX = 4096
 
 _CELL_PX = 32
@@ -24,7 +25,7 @@ _LEAST_INK = 0.1
 
 
 def fit_line_width(page: PageImage) -> PageImage:
-    """The page with its line width known, and scaled so that lines come to about 2.5 px unless they are 1.8 to 4.
+    """The page with its line width known, and scaled so that lines come to about 2.5 px unless they are 1.8 to 3.5.
 
     A page without ink comes back as it is. Reduced by area averaging, enlarged by cubic interpolation; `to_given`
     follows, pixel centres at whole numbers. No side is enlarged beyond 4096 px; a page larger than that is reduced
@@ -96,7 +97,8 @@ def _usual(widths: NDArray[np.float64], weights: NDArray[np.float64]) -> tuple[f
 
 
 def _scale(width_px: float, side_px: int) -> float:
-    scale = 1.0 if NARROWEST_PX <= width_px <= WIDEST_PX else BEST_PX / width_px
+    widest_px = WIDEST_PX if side_px > _SMALL_PX else _WIDEST_OF_SMALL_PX
+    scale = 1.0 if NARROWEST_PX <= width_px <= widest_px else BEST_PX / width_px
     if side_px * scale > MOST_SIDE_PX:
         narrowest = min(1.0, NARROWEST_PX / width_px)
         scale = max(MOST_SIDE_PX / side_px, min(scale, narrowest))

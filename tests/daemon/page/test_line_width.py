@@ -74,6 +74,12 @@ def test_other_lines_come_to_about_two_and_a_half_px(width_px: float) -> None:
     assert line_width_px(fitted.grey) == pytest.approx(2.5, rel=0.25)
 
 
+def test_a_small_picture_with_lines_that_are_a_little_wide_is_not_reduced() -> None:
+    small, large = (fit_line_width(page(drawn(width_px=3.8, side_px=side_px))) for side_px in (256, 1024))
+    assert small.grey.shape == (256, 256)
+    assert large.line_width_px == pytest.approx(2.5)
+
+
 def middle_of_dot(grey: Grey) -> Points:
     ink = 255.0 - grey
     y, x = np.indices(grey.shape)
