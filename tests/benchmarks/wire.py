@@ -17,7 +17,7 @@ from firmware_protocol.ink import Polyline
 _URL = "sim://grbl?" + "&".join(
     f"{base + axis}={value}" for base, value in ((100, 40), (110, 9000), (120, 3000)) for axis in range(3)
 )
-_DRAWS = b"G1"
+_DRAWS = (b"G1", b"G2 ", b"G2X", b"G3")
 
 
 class Wire:
@@ -57,7 +57,7 @@ class Wire:
         return self._simulator.next_time()
 
     def receive(self, data: bytes, now: float) -> None:
-        if self._awaited and _DRAWS in data:
+        if self._awaited and any(word in data for word in _DRAWS):
             self.line_at_s, self._awaited = time.time(), False
         if data.strip(b"?") and self._answered_s is not None:
             self.late_s.append(time.monotonic() - self._answered_s)
