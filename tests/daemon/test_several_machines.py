@@ -60,7 +60,7 @@ def test_two_machines_draw_ten_pictures_of_one_inbox_each_exactly_once(tmp_path:
 
 
 def test_a_machine_that_is_unplugged_interrupts_its_job_and_the_other_goes_on_with_the_queue(tmp_path: Path) -> None:
-    left, right = "url = 'sim://grbl?speed=25&unplug=1.5'", SLOW + "\ndraw_mm_s = 15"
+    left, right = "url = 'sim://grbl?unplug=1.5'", SLOW + "\ndraw_mm_s = 15"
     with running(settings_of(tmp_path, left=left, right=right)) as daemon:
         for number in range(6):
             daemon.drop(f"{number}.png")
