@@ -29,7 +29,8 @@ _LEAST_STEP, _LEAST_DARK = 0.12, 0.5
 _MOST_LOOKS = 400
 _FLAT = 1.0
 """Ground of fewer grey levels' deviation has been painted by a program, not seen by a camera."""
-_INSET = 0.012
+_INSET, _BLUR_PX = 0.012, 1.5
+"""So much of the sheet along its sides is left out, a share and px: no side is quite straight, no picture sharp."""
 
 
 def straighten(page: PageImage) -> PageImage:
@@ -128,7 +129,7 @@ def _corners(sides: list[Side]) -> Points:
 def _upright(page: PageImage, corners: Points) -> PageImage:
     lengths = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
     wide, high = round(max(lengths[0], lengths[2])), round(max(lengths[1], lengths[3]))
-    inset = _INSET * min(wide, high)
+    inset = _INSET * min(wide, high) + _BLUR_PX
     upright = np.array([[0, 0], [wide, 0], [wide, high], [0, high]]) - 0.5 - inset
     size = (max(1, round(wide - 2 * inset)), max(1, round(high - 2 * inset)))
     turn = cv2.getPerspectiveTransform(upright.astype(np.float32), corners.astype(np.float32))
