@@ -35,6 +35,7 @@ def kill_the_daemon(bench: Bench) -> None:
 
 
 def kill_the_worker(bench: Bench) -> None:
+    bench.checks.planners_killed.update(_in(bench, State.PLANNING))
     for pid in bench.daemon.children():
         os.kill(pid, signal.SIGKILL)
 
@@ -136,7 +137,11 @@ def _gone(bench: Bench) -> None:
 
 
 def _drawing(bench: Bench) -> set[str]:
-    return {job.id for job in told(bench.daemon.journal).values() if job.state in UNDER_THE_PEN}
+    return _in(bench, *UNDER_THE_PEN)
+
+
+def _in(bench: Bench, *states: State) -> set[str]:
+    return {job.id for job in told(bench.daemon.journal).values() if job.state in states}
 
 
 def _begun(bench: Bench) -> int:
