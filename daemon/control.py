@@ -7,6 +7,7 @@ import os
 import selectors
 import socket
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -23,6 +24,7 @@ ANSWER_WITHIN_S = 15.0
 MOVING_AT_ONCE = 8
 MOVED_WITHIN_S = 900.0
 """Homing and a long frame take their time."""
+_AGAIN_S = 0.02
 _PATH_BYTES = 107
 """sun_path, without its closing zero."""
 
@@ -205,7 +207,7 @@ def give_order(path: Path, order: Order) -> str:
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
         connection.settimeout(MOVED_WITHIN_S if order.moves else ANSWER_WITHIN_S)
         try:
-            connection.connect(str(path))
+            _connect(connection, path)
             connection.sendall(order.model_dump_json().encode() + b"\n")
             said = connection.makefile("rb").readline()
             answer = Answer.model_validate(json.loads(said))
@@ -214,3 +216,15 @@ def give_order(path: Path, order: Order) -> str:
     if not answer.ok:
         raise LinedrawError(answer.words)
     return answer.words
+
+
+def _connect(connection: socket.socket, path: Path) -> None:
+    """Where so many wait to be let in that there is no room to wait, it is tried again. Raises OSError."""
+    until = time.monotonic() + ANSWER_WITHIN_S
+    while True:
+        try:
+            return connection.connect(str(path))
+        except BlockingIOError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(_AGAIN_S)
