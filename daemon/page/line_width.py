@@ -22,6 +22,8 @@ _WIDTHS_A_CELL = 6
 _MELTED, _LEAST_CELLS = 1.5, 12
 _LEAST_INK = 0.1
 """Less than this share of full ink is grain."""
+_LEAST_DARKEST = 0.35
+"""A cell without any darker ink holds a stain, or what is left of a printed line."""
 
 
 def fit_line_width(page: PageImage) -> PageImage:
@@ -61,14 +63,14 @@ def _cell_widths(grey: Grey, found: Tones, cell_px: int) -> tuple[float, float]:
     """The median and the usual width of all cells; band by band, so that memory does not grow with the page."""
     padded = np.pad(grey, 1, mode="constant", constant_values=255)
     bands = [_band(padded[top : top + cell_px + 1], found, cell_px) for top in range(0, len(padded) - 1, cell_px)]
-    area, outline, above = np.stack(bands, axis=1)
+    area, outline, above, darkest = np.stack(bands, axis=1)
     outline[:-1] += above[1:]
-    held = (outline > 0) & (area > 0)
+    held = (outline > 0) & (area > 0) & (darkest >= _LEAST_DARKEST)
     return _usual(2 * area[held] / outline[held], outline[held])
 
 
 def _band(rows: Grey, found: Tones, cell_px: int) -> NDArray[np.float64]:
-    """Ink and outline of each cell of a band, and outline of the cells above, (3, N).
+    """Ink and outline of each cell of a band, outline of the cells above, and the darkest of its ink, (4, N).
 
     rows: of the band, and one row and one column above and left of them. A piece of outline belongs to the darkest of
     its pixels: along the rim between two cells all of a line may lie in one of them.
@@ -84,7 +86,8 @@ def _band(rows: Grey, found: Tones, cell_px: int) -> NDArray[np.float64]:
     own[:-1, 1:] += np.where(to_above, outline, 0.0)
     starts = np.arange(0, here.shape[1], cell_px)
     sums = (here.sum(axis=0), own[1:, 1:].sum(axis=0), own[0, 1:])
-    return np.stack([np.add.reduceat(each, starts) for each in sums]).astype(float)
+    darkest = np.maximum.reduceat(here.max(axis=0), starts)
+    return np.stack([*(np.add.reduceat(each, starts) for each in sums), darkest]).astype(float)
 
 
 def _usual(widths: NDArray[np.float64], weights: NDArray[np.float64]) -> tuple[float, float]:

@@ -74,6 +74,13 @@ def test_other_lines_come_to_about_two_and_a_half_px(width_px: float) -> None:
     assert line_width_px(fitted.grey) == pytest.approx(2.5, rel=0.25)
 
 
+def test_pale_remains_of_printed_lines_do_not_count() -> None:
+    grey = drawn(width_px=5, side_px=512)
+    pale = np.full_like(grey, 255)
+    pale[::16] = 200
+    assert line_width_px(np.minimum(grey, pale)) == pytest.approx(5, rel=0.25)
+
+
 def test_a_small_picture_with_lines_that_are_a_little_wide_is_not_reduced() -> None:
     small, large = (fit_line_width(page(drawn(width_px=3.8, side_px=side_px))) for side_px in (256, 1024))
     assert small.grey.shape == (256, 256)
