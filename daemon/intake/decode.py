@@ -31,7 +31,7 @@ def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> Page
     max_megapixels, damaged or cut short.
     """
     name = name or str(path)
-    data = _read(path, name, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
+    data = read_file(path, name, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
     header = _checked_header(name, data, max_megapixels)
     grey = _upright(_grey(_pixels(name, data, header), header), header.turned)
     height_px, width_px = grey.shape
@@ -45,8 +45,11 @@ def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> Page
     )
 
 
-def _read(path: Path, name: str, *, most_bytes: int) -> bytes:
-    """The file's bytes. O_NONBLOCK: opening a FIFO that nobody writes would wait for ever."""
+def read_file(path: Path, name: str, *, most_bytes: int) -> bytes:
+    """The file's bytes, as `name`. Raises BadPicture for one that is larger, a link, or no regular file.
+
+    O_NONBLOCK: opening a FIFO that nobody writes would wait for ever.
+    """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
         with open(descriptor, "rb") as file:

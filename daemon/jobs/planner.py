@@ -10,7 +10,7 @@ import resource
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TypeAlias
@@ -22,11 +22,13 @@ from daemon.errors import LinedrawError
 from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
 from daemon.graph.verdicts import as_json
-from daemon.intake.decode import decode
+from daemon.intake.picture import open_picture
 from daemon.intake.scanner import is_scan
+from daemon.intake.vector.sheet import VectorPage
 from daemon.jobs.correction import told
 from daemon.jobs.devices import program_of, seconds_of
 from daemon.jobs.folder import source_of, write_durably
+from daemon.jobs.pages import page_of
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
 from daemon.page.back import given_px, on_given
@@ -62,32 +64,25 @@ def plan_picture(
     """
     stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings, machine)
     with stages("decode"):
-        given = decode(source, max_megapixels=settings.intake.max_megapixels, name=name)
-    with stages("page"):
-        readable = put_right(given)
-        page = fit(readable)
-    with stages("vision"):
-        segmentation = segmenter(settings.planning.threads).segment(page)
-    with stages("graph"):
-        graph = _graph(page, segmentation, folder, settings)
-        on_page = _strokes(graph, page, settings)
-        drawing, upright = drawing_on_given(on_page, page), drawing_on_readable(on_page, page, readable)
+        given = _opened(source, folder, settings, name)
+    seen = _known(given) if isinstance(given, VectorPage) else _read(given, folder, settings, stages)
+    readable, page = seen.readable, seen.page
     with stages("toolpath"):
-        scanned = is_scan(Path(name).name)
-        toolpath = _toolpath(upright, page, readable, settings, settings.machines[machine], scanned=scanned)
+        true_size = isinstance(given, VectorPage) or is_scan(Path(name).name)
+        toolpath = _toolpath(seen, settings, settings.machines[machine], true_size=true_size)
     with stages("program"):
         told_to_it = told(toolpath, settings.sheet, settings.machines[machine])
         program = program_of(told_to_it, settings.machines[machine], folder.name)
         estimated_s = seconds_of(program, settings.machines[machine])
     with stages("report"):
-        _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, (page, segmentation, graph, on_page))
+        _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, seen)
         width_px = _width_px(page, readable)
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
         planned = planned_report(
-            (readable, page), graph, toolpath, found,
+            (readable, page), seen.graph, toolpath, found,
             line_width_px=width_px, estimated_s=estimated_s, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb(),
         )  # fmt: skip
-    write_durably(folder / "strokes.json", _strokes_json(drawing))
+    write_durably(folder / "strokes.json", _strokes_json(seen.drawing))
     write_durably(folder / "report.json", to_json(planned).encode())
     # The program comes last: a folder that holds one is planned whole.
     write_durably(folder / "program.gcode", program_text(program).encode())
@@ -100,11 +95,27 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     source = source_of(folder)
     if source is None:
         raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
-    readable = put_right(decode(source, max_megapixels=settings.intake.max_megapixels))
+    given = _opened(source, folder, settings, str(source))
+    readable = given.page if isinstance(given, VectorPage) else put_right(given)
     drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
     found = _fidelity_mm(readable, drawn, np.array(planned.from_px), planned.line_width_px)
     executed = executed_report(planned, found, real_s=planned.real_s or 0.0)
     write_durably(folder / "report.json", to_json(executed).encode())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Understood:
+    """readable: the page put right, in whose px `upright` is. page: as it is read, in px of which are the maps, the
+    graph and `on_page`. drawing: in px of the given picture. segmentation: None where nothing had to be seen.
+    """
+
+    readable: PageImage
+    page: PageImage
+    segmentation: Segmentation | None
+    graph: LineGraph
+    on_page: Drawing
+    upright: Drawing
+    drawing: Drawing
 
 
 class Stages:
@@ -126,6 +137,29 @@ class Stages:
 def segmenter(threads: int) -> Segmenter:
     """Loaded once for all pictures of this process."""
     return Segmenter(threads=threads)
+
+
+def _opened(source: Path, folder: Path, settings: Settings, name: str) -> PageImage | VectorPage:
+    return open_picture(source, page=page_of(folder), max_megapixels=settings.intake.max_megapixels, name=name)
+
+
+def _known(given: VectorPage) -> Understood:
+    """A vector file says itself what is drawn."""
+    page, drawing = given.page, given.drawing
+    return Understood(page, page, None, given.graph, drawing, drawing, drawing)
+
+
+def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages) -> Understood:
+    with stages("page"):
+        readable = put_right(given)
+        page = fit(readable)
+    with stages("vision"):
+        segmentation = segmenter(settings.planning.threads).segment(page)
+    with stages("graph"):
+        graph = _graph(page, segmentation, folder, settings)
+        on_page = _strokes(graph, page, settings)
+        drawing, upright = drawing_on_given(on_page, page), drawing_on_readable(on_page, page, readable)
+    return Understood(readable, page, segmentation, graph, on_page, upright, drawing)
 
 
 def drawing_on_given(drawing: Drawing, page: PageImage) -> Drawing:
@@ -165,21 +199,17 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
     return strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
 
 
-def _toolpath(
-    drawing: Drawing, page: PageImage, readable: PageImage, settings: Settings, machine: Machine, *, scanned: bool
-) -> Toolpath:
-    sheet = settings.sheet
-    true_size = sheet.size == "true" or (sheet.size == "auto" and scanned and page.px_per_mm is not None)
+def _toolpath(seen: Understood, settings: Settings, machine: Machine, *, true_size: bool) -> Toolpath:
+    """true_size: as large as the picture says, where it does and the settings leave it open."""
+    sheet, page = settings.sheet, seen.page
+    true_size = sheet.size == "true" or (sheet.size == "auto" and true_size and page.px_per_mm is not None)
     corner_mm = box_origin_mm(sheet, machine)
+    # Only where lines were seen in pixels do these limit how exactly they are known.
+    error_px = np.inf if seen.segmentation is None else _ERROR_PX * given_px(page) / given_px(seen.readable)
     return plan_toolpath(
-        drawing,
+        seen.upright,
         layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, true_size),
-        precision=Precision(
-            sheet.error_mm,
-            _ERROR_PX * given_px(page) / given_px(readable),
-            machine.resolution_mm,
-            _curve_mm(settings, machine),
-        ),
+        precision=Precision(sheet.error_mm, error_px, machine.resolution_mm, _curve_mm(settings, machine)),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,
         reach_mm=reach_mm(machine),
@@ -195,19 +225,15 @@ def _curve_mm(settings: Settings, machine: Machine) -> float:
 
 
 def _write_pictures(
-    folder: Path,
-    settings: Settings,
-    name: str,
-    toolpath: Toolpath,
-    estimated_s: float,
-    understood: tuple[PageImage, Segmentation, LineGraph, Drawing],
+    folder: Path, settings: Settings, name: str, toolpath: Toolpath, estimated_s: float, seen: Understood
 ) -> None:
     (machine,) = settings.machines.values()
     corner_mm = box_origin_mm(settings.sheet, machine)
     sheet = preview(toolpath, box_mm=settings.sheet.box_mm, box_origin_mm=corner_mm, seconds=estimated_s)
+    shown = explain(seen.page, seen.segmentation, seen.graph, seen.on_page, name=name)
     svg = write_svg(toolpath, size_mm=settings.sheet.box_mm, corner_mm=corner_mm)
     write_durably(folder / "preview.png", canvas.png(sheet))
-    write_durably(folder / "explain.png", canvas.png(explain(*understood, name=name)))
+    write_durably(folder / "explain.png", canvas.png(shown))
     write_durably(folder / "drawing.svg", svg.encode())
 
 

@@ -26,10 +26,13 @@ _PALE = np.asarray(184 + 71 * (np.arange(256) / np.float32(255)), np.uint8)
 """Each grey level, pale."""
 
 
-def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawing: Drawing, *, name: str) -> Picture:
+def explain(
+    page: PageImage, segmentation: Segmentation | None, graph: LineGraph, drawing: Drawing, *, name: str
+) -> Picture:
     """Four tiles with their legends: the page, the network's channels on it, the graph, and the strokes.
 
-    Below them what was done to the page before.
+    Below them what was done to the page before. segmentation: None where the network was not asked, for the file said
+    itself where its lines are.
 
     segmentation, graph and drawing: in px of this page. name: of the picture, for the heading. Returns uint8
     (H, W, 3), about 1500 px wide.
@@ -37,10 +40,7 @@ def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawi
     scale = _TILE_PX / max(page.grey.shape)
     tiles = [
         ([("the page", canvas.WORDS)], _enlarged(page.grey, scale)),
-        (
-            [("the network sees: ", canvas.WORDS), ("lines", canvas.BLUE), ("corners", canvas.ORANGE)],
-            _channels(segmentation, scale),
-        ),
+        _seen(page, segmentation, scale),
         _graph(page, graph, scale),
         _strokes(page, drawing, scale),
     ]
@@ -50,6 +50,13 @@ def explain(page: PageImage, segmentation: Segmentation, graph: LineGraph, drawi
 
 
 _Legend = list[tuple[str, Colour]]
+
+
+def _seen(page: PageImage, segmentation: Segmentation | None, scale: float) -> tuple[_Legend, Picture]:
+    if segmentation is None:
+        return [("the network was not asked: these lines stand in the file", canvas.WORDS)], _faded(page.grey, scale)
+    legend = [("the network sees: ", canvas.WORDS), ("lines", canvas.BLUE), ("corners", canvas.ORANGE)]
+    return legend, _channels(segmentation, scale)
 
 
 def _graph(page: PageImage, graph: LineGraph, scale: float) -> tuple[_Legend, Picture]:
