@@ -71,7 +71,7 @@ generalisation: $(VENV)/runtime $(PEERS)/made ## docs/generalisation.png: our ow
 
 peers: $(PEERS)/made ## Other people's tracers in .venv-peers, for bench-fidelity to compare with
 
-deb: $(VENV)/deb ## dist/linedrawd_VERSION_amd64.deb and _arm64.deb for Debian 12 and 13, in a quarter of an hour
+deb: $(VENV)/deb ## dist/linedrawd_VERSION_amd64.deb and _arm64.deb for Debian 12 and 13, in minutes
 	@$(BIN)/python systemd/debian/build.py
 	@if command -v lintian >/dev/null; then lintian --fail-on error dist/linedrawd_*.deb; \
 		else echo 'lintian is not installed: what it finds is not known'; fi
