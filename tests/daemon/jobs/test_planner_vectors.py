@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -60,14 +61,9 @@ def test_it_is_drawn_as_large_as_it_says(planned: Path) -> None:
 
 
 def test_sides_that_two_rectangles_share_are_drawn_once(planned: Path) -> None:
-    strokes = [
-        np.array(stroke) / read(planned / "strokes.json")["px_per_mm"]
-        for stroke in read(planned / "strokes.json")["strokes"]
-    ]
-    shared = [
-        line for stroke in strokes for line in zip(stroke[:-1], stroke[1:], strict=True)
-        if np.allclose([line[0][0], line[1][0]], 35, atol=0.1) and abs(line[0][1] - line[1][1]) > 9
-    ]  # fmt: skip
+    drawn = read(planned / "strokes.json")
+    sides = [side for stroke in drawn["strokes"] for side in pairwise(np.array(stroke) / drawn["px_per_mm"])]
+    shared = [(a, b) for a, b in sides if np.allclose([a[0], b[0]], 35, atol=0.1) and abs(a[1] - b[1]) > 9]
     assert len(shared) == 1
 
 
@@ -95,7 +91,7 @@ def test_a_file_that_says_no_size_fills_the_box(settings: Settings, tmp_path: Pa
 
 
 def test_what_is_too_large_for_the_machine_or_empty_fails_with_a_sentence(settings: Settings, tmp_path: Path) -> None:
-    head = '<svg xmlns="http://www.w3.org/2000/svg" width="2m" height="2m">'.replace("2m", "2000mm")
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="2000mm" height="2000mm">'
     (tmp_path / "source.svg").write_text(head + '<path stroke="red" d="M0 0h7000"/></svg>')
     with pytest.raises(OutOfReach):
         plan_picture(tmp_path / "source.svg", tmp_path, settings, "plotter")
