@@ -11,6 +11,8 @@ from firmware_protocol.grbl.simulator.lookahead import Block, Lookahead, Vector
 
 PREPARED_S = 0.045
 """How far ahead of the motors GRBL has cut the motion into segments: a hold or a new block acts only behind them."""
+PREPARED_BLOCKS = 5
+"""Segments that the ring of GRBL holds; each belongs to one block, so of very short blocks no more are prepared."""
 
 _NEVER = float("inf")
 _TINY_MM = 1e-9
@@ -52,6 +54,7 @@ class Stepper:
         self._now = 0.0
         self._end_s = 0.0
         self._prepared = self._held = False
+        self._dropped_ends_s: deque[float] = deque(maxlen=PREPARED_BLOCKS)
         self.position_mm: Vector = (0.0, 0.0, 0.0)
         self.moving = False
 
@@ -70,7 +73,13 @@ class Stepper:
         """When the next place in the planner becomes free or the motion ends."""
         if not self.moving:
             return _NEVER
-        return self._end_s - PREPARED_S if self._prepared else self._end_s
+        return self._drop_s if self._prepared else self._end_s
+
+    @property
+    def _drop_s(self) -> float:
+        """When the last segment of the first block is cut, so that its place in the planner becomes free."""
+        ends_s = self._dropped_ends_s
+        return max(self._end_s - PREPARED_S, ends_s[0] if len(ends_s) == PREPARED_BLOCKS else 0.0)
 
     def start(self, now: float) -> None:
         """Set the motors going, when there is something to do."""
@@ -89,8 +98,9 @@ class Stepper:
         """Move on to `now`. Returns True when a place in the planner became free or the motion ended."""
         self._now = now
         changed = False
-        while self._prepared and self._end_s - PREPARED_S <= now:
+        while self._prepared and self._drop_s <= now:
             self.lookahead.drop_first()
+            self._dropped_ends_s.append(self._end_s)
             self._prepared = False
             changed = True
             if self.lookahead.blocks:
@@ -152,6 +162,7 @@ class Stepper:
 
     def _forget(self) -> None:
         self._pieces.clear()
+        self._dropped_ends_s.clear()
         self._prepared = self._held = self.moving = False
         self.lookahead.reset(self.position_mm)
         self.position_mm = self.lookahead.millimetres(self.lookahead.steps(self.position_mm))

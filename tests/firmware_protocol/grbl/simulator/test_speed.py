@@ -6,6 +6,8 @@ from math import cos, sin
 
 import pytest
 
+from firmware_protocol.grbl.simulator.lookahead import BLOCKS
+from firmware_protocol.grbl.simulator.stepper import PREPARED_BLOCKS
 from tests.firmware_protocol.grbl.bench import BRISK, Talk
 
 QUICK = BRISK | dict.fromkeys((100, 101, 102), 40) | dict.fromkeys((110, 111, 112), 30000)
@@ -57,3 +59,21 @@ def test_waiting_for_each_answer_costs_about_half_of_the_rate() -> None:
 @pytest.mark.parametrize(("polls_hz", "least", "most"), [(10, 0.96, 1.0), (100, 0.85, 0.93)])
 def test_asking_for_the_state_costs_as_many_lines_as_on_a_real_one(polls_hz: float, least: float, most: float) -> None:
     assert least <= rate(check=False, polls_hz=polls_hz) / rate(check=False) <= most
+
+
+def test_the_pen_is_never_more_blocks_behind_than_the_planner_and_the_segments_hold() -> None:
+    """Reports and answers come in one order, so of lines of 3 ms no more may lie between them."""
+    conversation = Poller(settings=QUICK)
+    conversation.wait(2.0)
+    conversation.ask("$10=0\n")  # work coordinates
+    lines = [f"G1 X{0.1 * number:.3f}" for number in range(1, 600)]
+    conversation.ask("F3000 G1 X0\n", within_s=1.0)
+    conversation.every_s = conversation.next_s = 0.02
+    conversation.next_s += conversation.now
+    answered, behind = 0, []
+    for line in conversation.stream(lines, 128):
+        answered += line == "ok"
+        if line.startswith("<Run"):
+            behind.append(answered - round(float(line.split("WPos:")[1].split(",")[0]) / 0.1 - 0.5))
+    assert len(behind) > 20
+    assert BLOCKS < max(behind) <= BLOCKS + PREPARED_BLOCKS
