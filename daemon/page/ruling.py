@@ -15,6 +15,7 @@ from daemon.shapes import Grey, PageImage, Points
 
 _LOOK_PX = 1600
 _LEAST_SIDE_PX = 100
+_PAINTED = 0.6
 _STRIPS = 48
 _SPANNING = 0.6
 """A printed line is seen in so many of the strips across the page."""
@@ -52,7 +53,7 @@ def take_off_ruling(page: PageImage) -> PageImage:
     is of one tone, comes back as it is.
     """
     found = tones(page.grey)
-    if found is None or found.grain == 0 or min(page.grey.shape) < _LEAST_SIDE_PX:
+    if found is None or min(page.grey.shape) < _LEAST_SIDE_PX or _painted(page.grey, found):
         return page
     most = _DARKEST * _darkness(page.grey, found)
     across = _without(page.grey, found, most)
@@ -60,6 +61,11 @@ def take_off_ruling(page: PageImage) -> PageImage:
     if down is not None:
         return noted(page, "printed lines taken off", np.ascontiguousarray(down.T))
     return page if across is None else noted(page, "printed lines taken off", across)
+
+
+def _painted(grey: Grey, found: Tones) -> bool:
+    """Whether most of the paper is of one level exactly, as no camera or scanner sees it."""
+    return float(np.mean(grey[::3, ::3] == round(found.paper))) >= _PAINTED
 
 
 def _darkness(grey: Grey, found: Tones) -> float:

@@ -35,6 +35,13 @@ def test_a_square_has_its_width_wherever_it_lies(first: int) -> None:
     assert line_width_px(grey) == pytest.approx(3, rel=0.4)
 
 
+def test_the_lower_rim_of_a_line_counts_where_the_next_cell_begins() -> None:
+    grey = np.full((128, 128), 255, np.uint8)
+    for row in (32, 64, 96):
+        grey[row - 2 : row, 10:118] = 0
+    assert line_width_px(grey) == pytest.approx(2, rel=0.1)
+
+
 def test_grain_changes_the_width_little() -> None:
     assert line_width_px(grain(drawn(width_px=3), 6)) == pytest.approx(3, rel=0.1)
 

@@ -15,7 +15,13 @@ INK = drawn(width_px=5, side_px=SIDE_PX) < 128
 
 
 def ruled(
-    *, pitch: float = 30, slope: float = 0.0, dark: float = 0.25, squared: bool = False, fan: float = 0.0
+    *,
+    pitch: float = 30,
+    slope: float = 0.0,
+    dark: float = 0.25,
+    squared: bool = False,
+    fan: float = 0.0,
+    grain_sigma: float = 2,
 ) -> Grey:
     """The rings and the cross on printed paper; dark: the share of the light that the print takes."""
     print_px = np.zeros((SIDE_PX, SIDE_PX), np.uint8)
@@ -26,7 +32,9 @@ def ruled(
         cv2.line(print_px, fixed[0], fixed[1], 255, 2, cv2.LINE_AA, 4)
     both = np.maximum(print_px, print_px.T[:, ::-1]) if squared else print_px
     bare = 1 - dark * both.astype(float) / 255
-    return grain(np.asarray(np.rint(drawn(width_px=5, side_px=SIDE_PX, ink=30, paper=240) * bare), np.uint8), 2)
+    return grain(
+        np.asarray(np.rint(drawn(width_px=5, side_px=SIDE_PX, ink=30, paper=240) * bare), np.uint8), grain_sigma
+    )
 
 
 @pytest.mark.parametrize(
@@ -55,6 +63,7 @@ def test_printed_lines_go_and_ink_on_them_stays(grey: Grey) -> None:
         pytest.param(ruled(dark=0.95), id="as dark as the drawing"),
         pytest.param(grain(drawn(paper=240, side_px=SIDE_PX), 2), id="no print"),
         pytest.param(drawn(side_px=SIDE_PX), id="clean"),
+        pytest.param(ruled(grain_sigma=0), id="painted"),
         pytest.param(grain(np.full((SIDE_PX, SIDE_PX), 240, np.uint8), 2), id="empty"),
     ],
 )
