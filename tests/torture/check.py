@@ -14,7 +14,6 @@ from tests.torture.rig import Daemon, Machine, Sheet
 from tests.torture.sheet import Inked, Line, strokes_of, whose
 from tests.torture.told import Told, faults_of, told
 
-
 PLANNERS = 2
 """So many workers die over a picture before its job fails, as it is meant to; the picture stays in its folder."""
 
