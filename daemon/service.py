@@ -26,6 +26,8 @@ from daemon.supervision import Supervision
 
 LIFT_WITHIN_S = 25.0
 """How long an end waits for the pen to be lifted; systemd kills after 30 s."""
+LONG_AGO_NS = 20 * 10**9
+"""A picture that has lain in the inbox so long at the start does not have to settle."""
 INBOX_WITHIN_S = 300.0
 """Of the loop of the inbox, beyond its own waiting: for a slow disk, and old jobs that are removed."""
 
@@ -68,6 +70,7 @@ class Service:
     def _watch_of(self, machine: str) -> InboxWatch:
         """Of its inbox; "": of the inbox of all."""
         folder, intake, trouble = self._inboxes[machine], self._settings.intake, self._parts.desk.trouble
+        polls = intake.watch == "poll"
         inbox = Inbox(
             folder,
             settle_s=intake.settle_s,
@@ -75,12 +78,14 @@ class Service:
             refuse=trouble,
             signs=self._signs(machine),
             order=intake.order,
+            # The clock of a network folder is another one.
+            whole_before_ns=0 if polls else time.time_ns() - LONG_AGO_NS,
         )
         return InboxWatch(
             inbox,
             folder,
             trouble=trouble,
-            poll_s=intake.poll_s if intake.watch == "poll" else None,
+            poll_s=intake.poll_s if polls else None,
             tidy=lambda: self._look_at_the_inbox(machine),
         )
 

@@ -59,9 +59,12 @@ class Inbox:
         refuse: Callable[[str], None],
         signs: Mapping[str, Callable[[], object]],
         order: Order = "arrival",
+        whole_before_ns: int = 0,
     ) -> None:
+        """whole_before_ns: what was last changed before that (ns of the epoch) is whole: nobody writes it any more."""
         self._folder, self._settle_s, self._order = folder, settle_s, order
         self._claim, self._refuse, self._signs = claim, refuse, signs
+        self._whole_before_ns = whole_before_ns
         self._seen: dict[str, Seen] = {}
         self._refused: dict[str, tuple[Looks, Looks]] = {}
         self._of_stem: dict[str, set[str]] = {}
@@ -174,6 +177,8 @@ class Inbox:
         seen = self._seen[name]
         if side.is_side(name):
             return seen.since_s + ALONE_S
+        if max(seen.picture[-1], seen.side[-1]) < self._whole_before_ns:
+            return seen.since_s
         whole = name in self._closed and (seen.side == _NOTHING or side.side_name(name) in self._closed)
         return seen.since_s + self._settle_s * (1 if whole else UNCLOSED_FACTOR)
 

@@ -75,6 +75,22 @@ def test_a_picture_that_nobody_closed_settles_three_times_longer(desk: Desk) -> 
     assert desk.taken == ["a.png"]
 
 
+def test_a_picture_that_has_lain_there_since_long_before_the_start_is_claimed_at_once(tmp_path: Path) -> None:
+    desk = Desk(tmp_path)
+    changed_ns = desk.drop("old.png").lstat().st_ctime_ns
+    for whole_before_ns, claimed in ((changed_ns, []), (changed_ns + 1, ["old.png"])):
+        inbox = Inbox(
+            desk.inbox_dir,
+            settle_s=SETTLE_S,
+            claim=desk.claim,
+            refuse=desk.refused.append,
+            signs={},
+            whole_before_ns=whole_before_ns,
+        )
+        inbox.step(0.0)
+        assert desk.taken == claimed
+
+
 def test_a_growing_picture_is_left_until_it_has_stopped(desk: Desk) -> None:
     for second in range(20):
         desk.drop("slow.png", "x" * second)
