@@ -22,6 +22,8 @@ from tests.system.debian_root import PROJECT, PYTHONS, Machine, archive, host_su
 
 READY_WITHIN_S, FIRST_LINE_WITHIN_S, EXPOSURE = 2.0, 6.0, 1.5
 """The bars of a cold start, which the figures are printed with, and of what systemd calls exposure."""
+LIES_S = 21
+"""So long a picture lies in the inbox before a cold start, as one does that came before the power was cut."""
 PICTURE = PROJECT / "tests/drawings/house.png"
 BOOT_PACKAGES = ("systemd-sysv", "dbus")
 _CONFIG, _STATE, _LOG = "etc/linedrawd/linedrawd.toml", "var/lib/linedrawd", "var/log/linedrawd/linedrawd.log"
@@ -93,7 +95,8 @@ class Life:
         self._set("url", '"auto"', '"sim://grbl"')
         self._debian.run("sh", "-c", "printf 'u alice - - /tmp\\nm alice linedrawd\\n' | systemd-sysusers -")
         self._drop("waiting.png")
-        self._say("a picture waits in the inbox, dropped by alice of the group linedrawd")
+        self._say(f"a picture waits in the inbox for {LIES_S} s, dropped by alice of the group linedrawd")
+        time.sleep(LIES_S)
         self._forget_the_disk()
         began_s = time.monotonic()
         starting = self._debian.start()
