@@ -146,7 +146,8 @@ class Drawing:
 class Toolpath:
     """Strokes in machine mm, in drawing order; between them the machine travels with the pen up.
 
-    The pen starts at `start_mm` and is parked at `park_mm`.
+    The pen starts at `start_mm` and is parked at `park_mm`, where it is also changed: strokes of one pen follow each
+    other.
     """
 
     strokes: tuple[Stroke, ...]
@@ -161,9 +162,15 @@ class Toolpath:
 
     @property
     def travelled_mm(self) -> float:
-        ends = [tuple(end) for stroke in self.strokes for end in (stroke.points[0], stroke.points[-1])]
-        stops = [self.start_mm, *ends, self.park_mm]
-        return math.fsum(math.dist(a, b) for a, b in zip(stops[::2], stops[1::2], strict=True))
+        """With the pen up; where it is changed, by the park place."""
+        here, pen, ways = self.start_mm, None, []
+        for stroke in self.strokes:
+            if pen not in (None, stroke.pen):
+                ways.append(math.dist(here, self.park_mm))
+                here = self.park_mm
+            ways.append(math.dist(here, stroke.points[0]))
+            here, pen = tuple(stroke.points[-1]), stroke.pen
+        return math.fsum([*ways, math.dist(here, self.park_mm)])
 
 
 @dataclass(frozen=True, slots=True)

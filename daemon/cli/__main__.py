@@ -14,6 +14,7 @@ EXAMPLES = """examples:
   linedrawd --device grbl                  # the daemon: finds the port, draws what is dropped into the inbox
   linedrawd --device sim --state-dir try   # the same on a simulated machine; drop pictures into try/inbox
   linedrawd plan house.png -o plans        # what would be drawn, without a machine
+  linedrawd preview house.png              # one file that shows it, how it is drawn, and how long
   linedrawd draw house.png --device grbl   # one picture now
   linedrawd scan                           # what lies on the scanner comes into the inbox
   linedrawd next                           # a new sheet is in
@@ -62,6 +63,7 @@ def _parser() -> argparse.ArgumentParser:
         machine,
         models,
         plan,
+        preview,
         replay,
         report,
         scan,
@@ -90,6 +92,7 @@ def _parser() -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(title="commands (none: the daemon)", metavar="COMMAND")
     for group in (
         plan,
+        preview,
         draw,
         scan,
         control,

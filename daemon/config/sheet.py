@@ -24,6 +24,8 @@ class Intake(Section):
     """Which picture is drawn first; "priority": those whose names begin with a number and `-`, the lowest first."""
     duplicates: Literal["draw", "skip"] = "draw"
     """What becomes of a picture that is, byte for byte, that of another job."""
+    approve: bool = False
+    """Each drawing waits, planned, until somebody has looked at its preview.html and says `linedrawd approve JOB`."""
 
 
 class Keep(Section):

@@ -49,12 +49,17 @@ def program_of(toolpath: Toolpath, machine: Machine, name: str) -> Program:
     return _device(machine).program_of(toolpath, machine, name)
 
 
+def times_of(program: Program, machine: Machine) -> list[float]:
+    """When each line will have been drawn, in s, at usual speeds; empty where the model does not know."""
+    try:
+        return _device(machine).times_s([line.text for line in program.lines])
+    except (ProtocolError, ValueError):
+        return []
+
+
 def seconds_of(program: Program, machine: Machine) -> float:
     """How long the program takes on a machine with usual speeds and accelerations; 0 where the model does not know."""
-    try:
-        return _device(machine).times_s([line.text for line in program.lines])[-1]
-    except (ProtocolError, ValueError):
-        return 0.0
+    return next(reversed(times_of(program, machine)), 0.0)
 
 
 def opened(

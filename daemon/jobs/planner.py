@@ -1,6 +1,7 @@
 """The order of the rooms: from a picture file to a job's folder, and from drawn ink to its measure.
 
-Runs in the worker process only. Writes strokes.json, drawing.svg, program.gcode, preview.png, explain.png, report.json.
+Runs in the worker process only. Writes strokes.json, drawing.svg, program.gcode, preview.png, preview.html,
+explain.png and report.json.
 """
 
 from __future__ import annotations
@@ -26,19 +27,17 @@ from daemon.intake.picture import open_picture
 from daemon.intake.scanner import is_scan
 from daemon.intake.vector.sheet import VectorPage
 from daemon.jobs.correction import told
-from daemon.jobs.devices import program_of, seconds_of
+from daemon.jobs.devices import program_of, times_of
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.pages import page_of
+from daemon.jobs.pictures import strokes_s, write_pictures
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
 from daemon.page.back import given_px, on_given
 from daemon.page.prepare import fit, put_right
 from daemon.program.file import program_text
-from daemon.program.svg import write_svg
-from daemon.report import canvas
-from daemon.report.explain import explain
 from daemon.report.fidelity import Fidelity, fidelity
-from daemon.report.preview import preview
+from daemon.report.preview_html import Told
 from daemon.report.report import executed_report, from_json, planned_report, to_json
 from daemon.shapes import Affine, Drawing, Homography, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
 from daemon.toolpath.place import Layout, invert, place
@@ -73,9 +72,13 @@ def plan_picture(
     with stages("program"):
         told_to_it = told(toolpath, settings.sheet, settings.machines[machine])
         program = program_of(told_to_it, settings.machines[machine], folder.name)
-        estimated_s = seconds_of(program, settings.machines[machine])
+        times_s = times_of(program, settings.machines[machine])
+        estimated_s = next(reversed(times_s), 0.0)
     with stages("report"):
-        _write_pictures(folder, settings, Path(name).name, toolpath, estimated_s, seen)
+        about = Told(Path(name).name, machine, estimated_s, strokes_s(program, times_s))
+        pages = given.page if isinstance(given, VectorPage) else given, readable
+        understood = page, seen.segmentation, seen.graph, seen.on_page
+        write_pictures(folder, settings, toolpath, about, pages=pages, understood=understood)
         width_px = _width_px(page, readable)
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
         planned = planned_report(
@@ -222,19 +225,6 @@ def _curve_mm(settings: Settings, machine: Machine) -> float:
     """0 in the paper's own forms, which know no arcs."""
     paper_program = isinstance(machine, GrblMachine) and machine.dialect == "paper"
     return 0.0 if paper_program or settings.planning.graph == "paper" else settings.sheet.curve_tolerance_mm
-
-
-def _write_pictures(
-    folder: Path, settings: Settings, name: str, toolpath: Toolpath, estimated_s: float, seen: Understood
-) -> None:
-    (machine,) = settings.machines.values()
-    corner_mm = box_origin_mm(settings.sheet, machine)
-    sheet = preview(toolpath, box_mm=settings.sheet.box_mm, box_origin_mm=corner_mm, seconds=estimated_s)
-    shown = explain(seen.page, seen.segmentation, seen.graph, seen.on_page, name=name)
-    svg = write_svg(toolpath, size_mm=settings.sheet.box_mm, corner_mm=corner_mm)
-    write_durably(folder / "preview.png", canvas.png(sheet))
-    write_durably(folder / "explain.png", canvas.png(shown))
-    write_durably(folder / "drawing.svg", svg.encode())
 
 
 def _fidelity_mm(readable: PageImage, drawn_mm: list[Points], from_px: Affine, width_px: float) -> Fidelity:

@@ -39,7 +39,8 @@ def read(path: Path) -> dict[str, Any]:
 
 def test_a_planned_folder_is_complete(planned: Path) -> None:
     assert {path.name for path in planned.iterdir()} >= {
-        "source.jpg", "strokes.json", "drawing.svg", "program.gcode", "preview.png", "explain.png", "report.json",
+        "source.jpg", "strokes.json", "drawing.svg", "program.gcode", "preview.png", "preview.html", "explain.png",
+        "report.json",
     }  # fmt: skip
 
 
