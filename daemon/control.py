@@ -35,15 +35,27 @@ MACHINE_ORDERS: tuple[MachineOrderName, ...] = get_args(MachineOrderName)
 
 
 PersonOrderName: TypeAlias = Literal[
-    "ping", "scan", "next", "stop", "go", "drain", "cancel", "retry", "again", "pause", "resume", "feed"
+    "ping",
+    "scan",
+    "next",
+    "stop",
+    "go",
+    "drain",
+    "cancel",
+    "retry",
+    "again",
+    "approve",
+    "pause",
+    "resume",
+    "feed",
 ]
 
 
 class Order(BaseModel):
     """What a person wants.
 
-    job: of cancel, retry, again and frame, and of a resume `from_stroke`. at_once: of pause. x_mm, y_mm: of jog.
-    seconds: of pen down. percent: of feed. machine: the one that is meant, where there are several.
+    job: of cancel, retry, again, approve and frame, and of a resume `from_stroke`. at_once: of pause. x_mm, y_mm: of
+    jog. seconds: of pen down. percent: of feed. machine: the one that is meant, where there are several.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)

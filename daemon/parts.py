@@ -77,7 +77,11 @@ def parts_of(
         pool = at_end.enter_context(closing(Pool(settings, planner=planner)))
         suits = _suits(pool, desk)
         planning = Planning(
-            desk, pool, Allotment(desk, ahead=settings.planning.ahead, suits=suits, shared=settings.sharing)
+            desk,
+            pool,
+            Allotment(
+                desk, ahead=settings.planning.ahead, suits=suits, shared=settings.sharing, asks=_asks(pool, desk)
+            ),
         )
         drawings: dict[str, Drawing] = {}
         pulse = Pulse()
@@ -170,6 +174,20 @@ def _suits(pool: Pool, desk: Desk) -> Callable[[str, str], bool]:
         return holds_box(wished.sheet, wished.machines[machine])
 
     return suits
+
+
+def _asks(pool: Pool, desk: Desk) -> Callable[[str], bool]:
+    """Whether a person has to approve this job, planned for its machine."""
+
+    def asks(job: str) -> bool:
+        machine = desk.find(job).machine
+        try:
+            return settings_for(desk.folders.path(job), pool.settings, machine).intake.approve
+        except (LinedrawError, OSError):
+            # Its side file was right when it was planned: whoever looks sees what has changed.
+            return True
+
+    return asks
 
 
 def _rank_in(settings: Settings) -> Callable[[str], Rank]:

@@ -197,6 +197,7 @@ class Service:
             "drain": lambda: runner.drain(machine),
             "retry": lambda: self._choices.retry(order.job),
             "again": lambda: self._choices.again(order.job),
+            "approve": lambda: self._choices.approve(order.job),
         }
         if order.order in obeyed:
             return obeyed[order.order]()

@@ -62,6 +62,7 @@ class Status(MachineStatus):
     planning: str = ""
     jobs_queued: int = 0
     jobs_waiting: int = 0
+    jobs_to_approve: int = 0
     last_error: str = ""
     changed: str = ""
     machines: Mapping[str, MachineStatus] = field(default_factory=dict)

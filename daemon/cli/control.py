@@ -1,4 +1,4 @@
-"""`next`, `stop`, `go`, `drain`, `pause`, `resume`, `cancel`, `retry`, `again`: orders to the running daemon."""
+"""`next`, `stop`, `go`, `drain`, `pause`, `resume`, `cancel`, `retry`, `again`, `approve`: orders to the daemon."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ORDERS: dict[Literal["next", "stop", "go", "drain"], tuple[str, str]] = {
 _WHICH = "which machine, by the name of its section; needed where there are several"
 _WHICH_OR_ALL = "which machine, by the name of its section; all where none is named"
 
-_OF_A_JOB: dict[Literal["cancel", "retry", "again"], tuple[str, str, str]] = {
+_OF_A_JOB: dict[Literal["cancel", "retry", "again", "approve"], tuple[str, str, str]] = {
     "cancel": (
         "drop a job",
         "Drop a job. One that is being drawn is stopped, pen up.",
@@ -47,6 +47,11 @@ _OF_A_JOB: dict[Literal["cancel", "retry", "again"], tuple[str, str, str]] = {
         "draw a job once more",
         "Draw the picture of a job once more, as a new job, whatever became of the old one.",
         "linedrawd again 12         # put a new sheet in first",
+    ),
+    "approve": (
+        "draw a job that waits for that word",
+        "Draw a job that waits for approval, where `approve = true` asks for it.",
+        "linedrawd approve 12       # after a look at preview.html in its folder",
     ),
 }
 

@@ -73,6 +73,8 @@ def _print_fields(said: dict[str, Any]) -> None:
     for key, value in said.items():
         if value not in ("", None, 0, 0.0) and (key, value) != ("feed_percent", 100):
             print(f"{key.replace('_', ' '):14} {value}")
+    if said.get("jobs_to_approve"):
+        print(f"{'to approve':14} {meaning_of(State.WAITING, Reason.APPROVAL).remedy}")
     if said.get("reason") and (remedy := _remedy(str(said["state"]), str(said["reason"]))):
         print(f"{'what to do':14} {remedy}")
 

@@ -140,6 +140,8 @@ def _bar(percent: float) -> str:
 
 def _queue(said: dict[str, Any]) -> str:
     parts = [f"{said.get('jobs_queued') or 0} queued, {said.get('jobs_waiting') or 0} planned and waiting"]
+    if said.get("jobs_to_approve"):
+        parts.append(f"{said['jobs_to_approve']} to approve")
     if said.get("planning"):
         parts.append(f"planning {said['planning']} ({said.get('stage') or 'begins'})")
     if said.get("ink_m"):

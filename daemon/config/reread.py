@@ -22,6 +22,7 @@ AT_ONCE: Mapping[str, str] = {
     "machines.*.skew_deg": "the next picture that is planned",
     "machines.*.backlash_mm": "the next picture that is planned",
     "intake.max_megapixels": "the next picture that is planned",
+    "intake.approve": "the next picture that is planned",
     "intake.duplicates": "the next picture that comes in",
     "keep.free_mb": "the next picture that comes in",
     "keep.jobs_days": "the next look at old jobs",

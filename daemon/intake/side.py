@@ -27,6 +27,8 @@ class Wishes(BaseModel):
     copies: Annotated[int, Field(ge=1, le=100)] = 1
     machine: str = ""
     """The name of its section in the settings."""
+    approve: bool = False
+    """It waits, planned, until somebody says `linedrawd approve JOB`; where the settings say so, it does anyway."""
     pen: dict[str, Any] = Field(default_factory=dict)
     """Keys of the machine's pen that are different for this picture."""
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 
-from daemon.jobs.desk import DROPPED, READY, Desk
+from daemon.jobs.desk import DROPPED, Desk
 from daemon.jobs.journal import Job
-from daemon.jobs.states import State
+from daemon.jobs.states import Reason, State
 from daemon.jobs.station import Station
 
 _ANOTHER_IS_FREE = "it was planned for {machine}, {free} is free for it: it is planned again"
+_TO_APPROVE = "look at {page}, then `linedrawd approve {number}` has it drawn, `linedrawd cancel {number}` not"
 _TOO_FAR = "{machine} does not reach so far: it is planned for another machine"
 
 
@@ -18,7 +19,8 @@ class Allotment:
     """Chooses for whoever plans. With one machine it is that one, and the order of the queue.
 
     ahead: so many jobs are planned for each machine before it is free for them. suits: of a job and a machine, whether
-    its reach holds the whole box. shared: the machines that draw what comes in by the shared inbox.
+    its reach holds the whole box. shared: the machines that draw what comes in by the shared inbox. asks: of a job,
+    whether a person has to approve it.
     """
 
     def __init__(
@@ -28,8 +30,9 @@ class Allotment:
         ahead: int = 2,
         suits: Callable[[str, str], bool] = lambda job, machine: True,
         shared: frozenset[str] = frozenset(),
+        asks: Callable[[str], bool] = lambda job: False,
     ) -> None:
-        self._desk, self._ahead, self._suits, self._shared = desk, ahead, suits, shared
+        self._desk, self._ahead, self._suits, self._shared, self._asks = desk, ahead, suits, shared, asks
         self._too_far: set[tuple[str, str]] = set()
 
     def begin(self) -> Job | None:
@@ -56,6 +59,10 @@ class Allotment:
                 self._desk.step_at_last(job_id, State.CANCELLED, DROPPED)
             elif failed:
                 self._desk.step_at_last(job_id, State.FAILED, failed)
+            elif self._asks(job_id) and job_id != self._desk.only:
+                page, number = self._desk.folders.path(job_id) / "preview.html", job_id.partition("-")[0].lstrip("0")
+                words = _TO_APPROVE.format(page=page, number=number)
+                self._desk.step_at_last(job_id, State.WAITING, words, reason=Reason.APPROVAL)
             else:
                 machine = self._desk.find(job_id).machine
                 self._desk.step_at_last(job_id, State.PLANNED, f"planned for {machine}" if self._desk.several else "")
@@ -78,7 +85,7 @@ class Allotment:
 
     def _loads(self) -> Counter[str]:
         """How many jobs are planned for each machine."""
-        owners = (self._desk.station(job.machine) for job in self._desk.worked_on(*READY))
+        owners = (self._desk.station(job.machine) for job in self._desk.ready())
         return Counter(owner.name for owner in owners if owner)
 
     def _station_for(self, job: Job, loads: Counter[str]) -> Station | None:
@@ -93,7 +100,7 @@ class Allotment:
         """What is planned for a machine that cannot begin it now is queued again for one that is free."""
         for station in self._desk.stations.values():
             if station.free and not self._has_work(station):
-                job = next((job for job in self._desk.worked_on(*READY) if self._may_have(station, job)), None)
+                job = next((job for job in self._desk.ready() if self._may_have(station, job)), None)
                 if job:
                     words = _ANOTHER_IS_FREE.format(machine=job.machine, free=station.name)
                     self._desk.step(job.id, State.QUEUED, words)

@@ -9,7 +9,7 @@ from daemon.errors import LinedrawError
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.journal import UNTOLD, Job
-from daemon.jobs.states import State
+from daemon.jobs.states import Reason, State
 from daemon.jobs.wishes import SIDE_NAME
 from daemon.shapes import Program, ProgramLine
 
@@ -29,6 +29,15 @@ class Choices:
 
     def __init__(self, desk: Desk, *, placed: Callable[[str], bool]) -> None:
         self._desk, self._placed = desk, placed
+
+    def approve(self, job_id: str) -> str:
+        """Draw, when its turn comes, a job that waits for just this word."""
+        with self._desk.changed:
+            job = self._desk.find(job_id)
+            if (job.state, job.reason) != (State.WAITING, Reason.APPROVAL):
+                raise LinedrawError(f"job {job.id} is {job.state.value}: it does not wait for anybody's approval")
+            self._desk.step(job.id, State.PLANNED, "a person has approved it")
+        return f"job {job.id} is drawn when its turn comes"
 
     def retry(self, job_id: str) -> str:
         """Plan and draw a failed job again, where no ink of it can be on a sheet."""

@@ -237,6 +237,10 @@ class Desk:
         jobs = [job for job in self.journal.jobs(*states) if self.only in ("", job.id)]
         return sorted(jobs, key=lambda job: self._rank(job.name))
 
+    def ready(self) -> list[Job]:
+        """The planned jobs that may be drawn, the one that comes next first."""
+        return [job for job in self.worked_on(*READY) if job.reason is not Reason.APPROVAL]
+
     def is_cancelled(self, job_id: str) -> bool:
         return job_id in self._cancelled
 
@@ -267,5 +271,11 @@ class Desk:
             self.changed.wait_for(lambda: self.ending or self.changes != seen, seconds)
 
     def _show_queue(self) -> None:
-        self.show(jobs_queued=self.journal.count(State.QUEUED), jobs_waiting=self.journal.count(*READY))
+        waiting = self.journal.jobs(State.WAITING) if self.journal.count(State.WAITING) else []
+        to_approve = sum(job.reason is Reason.APPROVAL for job in waiting)
+        self.show(
+            jobs_queued=self.journal.count(State.QUEUED),
+            jobs_waiting=self.journal.count(*READY) - to_approve,
+            jobs_to_approve=to_approve,
+        )
         self.wake()

@@ -29,6 +29,7 @@ class Reason(Enum):
     """Why a job is in its state, where that decides what a person does about it."""
 
     NONE = ""
+    APPROVAL = "approval"
     PERSON = "person"
     DOOR = "door"
     AT_THE_MACHINE = "at the machine"
@@ -42,6 +43,8 @@ STEPS: dict[tuple[State, State], str] = {
     (State.QUEUED, State.PLANNING): "the worker is free",
     (State.PLANNING, State.PLANNED): "planned",
     (State.PLANNING, State.QUEUED): "the worker died for the first time, the daemon ended, or another machine reaches",
+    (State.PLANNING, State.WAITING): "planned, and a person has to approve it",
+    (State.WAITING, State.PLANNED): "approve JOB",
     (State.PLANNED, State.WAITING): "no machine, or no sheet",
     (State.PLANNED, State.QUEUED): "another machine is free",
     (State.WAITING, State.QUEUED): "another machine is free",
@@ -104,6 +107,10 @@ MEANINGS: dict[tuple[State, Reason], Meaning] = {
     (State.WAITING, Reason.NONE): Meaning(
         "Ready, but there is no machine or no new sheet; its words say which.",
         "Plug the machine in, or put a sheet in and say `linedrawd next`.",
+    ),
+    (State.WAITING, Reason.APPROVAL): Meaning(
+        "Planned, and not drawn before a person has approved it; others are. No ink.",
+        "Look at preview.html in its folder, then `linedrawd approve JOB` or `linedrawd cancel JOB`.",
     ),
     (State.DRAWING, Reason.NONE): Meaning("The machine draws it.", "`linedrawd pause`, `stop`, `drain`."),
     (State.PAUSED, Reason.PERSON): Meaning(

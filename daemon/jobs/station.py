@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from daemon.errors import DiskTrouble
-from daemon.jobs.desk import GONE, READY, Desk
+from daemon.jobs.desk import GONE, Desk
 from daemon.jobs.journal import Job
 from daemon.jobs.record import write_record
 from daemon.jobs.states import UNDER_THE_PEN, State
@@ -112,7 +112,7 @@ class Station:
 
     def _ready(self) -> list[Job]:
         """What goes on with a drawing comes first: its sheet lies under the pen."""
-        mine = [job for job in self.desk.worked_on(*READY) if self.may_take(job)]
+        mine = [job for job in self.desk.ready() if self.may_take(job)]
         return sorted(mine, key=lambda job: not job.possible)
 
     def _begin(self, job: Job) -> Job | None:

@@ -23,6 +23,8 @@ def with_wishes(settings: Settings, wishes: Wishes, machine: str, place: str) ->
         sheet = sheet.model_copy(update={"box_mm": wishes.box_mm, "size": "fit"})
     if wishes.pen:
         own = own.model_copy(update={"pen": _pen(own.pen, wishes, place)})
+    if wishes.approve:
+        settings = settings.model_copy(update={"intake": settings.intake.model_copy(update={"approve": True})})
     own = own.model_copy(update={"box_mm": None, "box_origin_mm": None, "corner": None})
     return settings.model_copy(update={"sheet": sheet, "machines": {machine: own}})
 

@@ -24,7 +24,7 @@ def test_what_a_side_file_may_say() -> None:
     ("said", "sentence"),
     [
         (b"size_mn = 80", "house.toml: size_mn is unknown: did you mean size_mm?"),
-        (b"zzz = 1", "house.toml: zzz is unknown: known are size_mm, copies, machine, pen"),
+        (b"zzz = 1", "house.toml: zzz is unknown: known are size_mm, copies, machine, approve, pen"),
         (b"size_mm = -1", "house.toml: size_mm: Input should be a length above 0, or two such as [80, 60]"),
         (b"size_mm = [80]", "house.toml: size_mm: Input should be a length above 0, or two such as [80, 60]"),
         (b"size_mm = nan", "house.toml: size_mm: Input should be a length above 0, or two such as [80, 60]"),
