@@ -19,6 +19,7 @@ from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders, make_folder
 from daemon.jobs.frame import places_of
+from daemon.jobs.kept_ink import Reports
 from daemon.jobs.mending import Mending
 from daemon.jobs.open_journal import open_journal
 from daemon.jobs.pen_life import PenLife
@@ -140,7 +141,10 @@ def _add_machine(parts: Parts, settings: Settings, name: str, recorder: Recorder
         moves=moves_of(machine),
         places=places_of(pool, station),
         load=load_program,
-        measure=lambda folder: beats.measuring(pool, folder, name),
+        reports=Reports(
+            whole=lambda folder: beats.whole(pool, folder),
+            measure=lambda folder: beats.measuring(pool, folder, name),
+        ),
         inked=parts.pens[name].drew,
     )
 

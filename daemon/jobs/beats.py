@@ -14,7 +14,7 @@ LINK_WITHIN_S = 60.0
 
 
 class Beats:
-    """turned: for each turn of the link. hearing: for what is heard. measuring: for the worker that measures ink."""
+    """turned: for each turn of the link. hearing: for what is heard. whole, measuring: for the worker."""
 
     def __init__(self, heart: Heart) -> None:
         self._heart = heart
@@ -30,6 +30,12 @@ class Beats:
             hear(event)
 
         return heard
+
+    def whole(self, pool: Pool, folder: Path) -> None:
+        """A short drawing may be over before the pictures of its plan are made."""
+        self._heart.within(LINK_WITHIN_S + pool.settings.planning.time_limit_s)
+        pool.await_pictures(folder)
+        self.turned()
 
     def measuring(self, pool: Pool, folder: Path, machine: str) -> None:
         # The worker may be planning another picture first, and measuring what every other machine has drawn.

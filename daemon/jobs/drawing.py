@@ -10,7 +10,7 @@ from pathlib import Path
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.choices import NOT_PLACED, program_left
 from daemon.jobs.journal import Job
-from daemon.jobs.kept_ink import add_to_report, keep_ink
+from daemon.jobs.kept_ink import Reports, add_to_report, keep_ink
 from daemon.jobs.moves import Moves, homing
 from daemon.jobs.open_machine import InkMm, Open, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
@@ -32,7 +32,7 @@ _PORT_STAYS_OPEN = {Verdict.FINISHED, Verdict.STOPPED, Verdict.REJECTED}
 class Drawing:
     """One turn connects, draws one job, obeys one order for the machine, or listens to an idle one.
 
-    load: reads a program file. measure: compares the ink of a simulated machine with the picture of a job's folder.
+    load: reads a program file. reports: what the worker does for the report of a drawing.
     moves, places: what a person may have the machine do between jobs, and where that leads. `asked` takes such orders.
     """
 
@@ -42,14 +42,14 @@ class Drawing:
         *,
         opened: Open,
         load: Callable[[Path], Program],
-        measure: Callable[[Path], None],
+        reports: Reports,
         moves: Moves,
         places: Places,
         inked: Callable[[Path, int], None] = lambda folder, strokes: None,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
         """inked: told the folder of a job that is over and how many of its strokes are on paper."""
-        self.station, self._desk, self._opened, self._load, self._measure = station, station.desk, opened, load, measure
+        self.station, self._desk, self._opened, self._load, self._reports = station, station.desk, opened, load, reports
         self._moves, self._places, self.asked, self._inked = moves, places, Asked(self._desk.wake), inked
         self._machine: OpenMachine | None = None
         self._now, self._placed = now, False
@@ -278,11 +278,12 @@ class Drawing:
         """The seconds into report.json, the ink beside it, and have it measured. A job does not fail for its report."""
         folder = self._desk.folders.path(job.id)
         try:
+            self._reports.whole(folder)
             add_to_report(folder / "report.json", real_s)
             if ink is not None:
                 keep_ink(folder, ink, more=job.possible > 0)
             if ink is not None and not self._desk.ending:
-                self._measure(folder)
+                self._reports.measure(folder)
         except (LinedrawError, ValueError) as error:
             self._desk.trouble(f"the report is not complete: {error}", job=job.id)
 

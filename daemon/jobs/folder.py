@@ -26,6 +26,15 @@ def write_durably(path: Path, data: bytes) -> None:
         sync_folder(path.parent)
 
 
+def write_all_durably(folder: Path, files: Mapping[str, bytes]) -> None:
+    """As `write_durably`, in this order. After a power cut the first few of them are there. Raises DiskTrouble."""
+    for name, data in files.items():
+        with _disk_trouble(folder / name), whole_file(folder / name) as file:
+            file.write(data)
+    with _disk_trouble(folder):
+        sync_folder(folder)
+
+
 def make_folder(folder: Path) -> Path:
     """The folder, made with its parents where it is missing. Raises DiskTrouble."""
     with _disk_trouble(folder):

@@ -3,10 +3,24 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from daemon.jobs.folder import write_durably
 from daemon.jobs.open_machine import InkMm
+
+
+@dataclass(frozen=True, slots=True)
+class Reports:
+    """What the worker does for the report of a drawing, by its job's folder. Each returns when it is done.
+
+    whole: the last file of its plan is written, well or badly. measure: the ink of a simulated machine is compared
+    with the picture.
+    """
+
+    whole: Callable[[Path], None]
+    measure: Callable[[Path], None]
 
 
 def keep_ink(folder: Path, ink: InkMm, *, more: bool) -> None:

@@ -28,7 +28,7 @@ from daemon.intake.scanner import is_scan
 from daemon.intake.vector.sheet import VectorPage
 from daemon.jobs.correction import told
 from daemon.jobs.devices import program_of, times_of
-from daemon.jobs.folder import source_of, write_durably
+from daemon.jobs.folder import source_of, write_all_durably, write_durably
 from daemon.jobs.pages import page_of
 from daemon.jobs.pictures import strokes_s, write_pictures
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
@@ -50,16 +50,24 @@ _ERROR_PX = 0.25
 """Of the page as it is read: how far simplification may lead a line aside, whatever error_mm says."""
 
 
-def _silent(stage: str) -> None:
+def _silent(stage: str = "") -> None:
     """Tells nobody."""
 
 
 def plan_picture(
-    source: Path, folder: Path, settings: Settings, machine: str, *, name: str = "", progress: Progress = _silent
+    source: Path,
+    folder: Path,
+    settings: Settings,
+    machine: str,
+    *,
+    name: str = "",
+    progress: Progress = _silent,
+    planned: Callable[[], None] = _silent,
 ) -> None:
     """Plan one picture for one machine and fill its folder. Raises LinedrawError; a failed plan leaves no program.
 
-    name: what people call the picture, if not by the path of `source`.
+    name: what people call the picture, if not by the path of `source`. planned: called as soon as the program can be
+    drawn; the pictures of the plan, and how well it fits the page, come behind it.
     """
     stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings, machine)
     with stages("decode"):
@@ -74,21 +82,23 @@ def plan_picture(
         program = program_of(told_to_it, settings.machines[machine], folder.name)
         times_s = times_of(program, settings.machines[machine])
         estimated_s = next(reversed(times_s), 0.0)
+    width_px = _width_px(page, readable)
+    report = planned_report(
+        (readable, page), seen.graph, toolpath, None,
+        line_width_px=width_px, estimated_s=estimated_s, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb(),
+    )  # fmt: skip
+    # The program comes last: a folder that holds one can be drawn.
+    files = {"strokes.json": _strokes_json(seen.drawing), "report.json": to_json(report).encode()}
+    write_all_durably(folder, files | {"program.gcode": program_text(program).encode()})
+    planned()
     with stages("report"):
         about = Told(Path(name).name, machine, estimated_s, strokes_s(program, times_s))
         pages = given.page if isinstance(given, VectorPage) else given, readable
         understood = page, seen.segmentation, seen.graph, seen.on_page
         write_pictures(folder, settings, toolpath, about, pages=pages, understood=understood)
-        width_px = _width_px(page, readable)
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
-        planned = planned_report(
-            (readable, page), seen.graph, toolpath, found,
-            line_width_px=width_px, estimated_s=estimated_s, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb(),
-        )  # fmt: skip
-    write_durably(folder / "strokes.json", _strokes_json(seen.drawing))
-    write_durably(folder / "report.json", to_json(planned).encode())
-    # The program comes last: a folder that holds one is planned whole.
-    write_durably(folder / "program.gcode", program_text(program).encode())
+    report = replace(report, fidelity=found, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb())
+    write_durably(folder / "report.json", to_json(report).encode())
 
 
 def measure_ink(folder: Path, settings: Settings, machine: str) -> None:

@@ -31,6 +31,8 @@ class Planning:
     ) -> None:
         self._desk, self._pool, self._allotment, self._now, self._free = desk, pool, allotment, now, free
         self._tried: set[str] = set()
+        self._planned = False
+        """The program of this turn can be drawn; only its pictures are missing."""
         self._not_before_s = float("-inf")
         """Nothing is planned until then: a disk that was full a moment ago is full."""
 
@@ -41,17 +43,22 @@ class Planning:
         job = self._allotment.begin()
         if job is None:
             return IDLE_S
+        self._planned = False
         try:
             self._plan(job)
         except LinedrawError as error:
             # Broken off because the daemon ends: the next one plans it again.
-            if not self._desk.ending and not self._again(job, error):
-                self._allotment.end(job.id, failed=str(error))
-        else:
-            self._allotment.end(job.id)
+            if not self._desk.ending:
+                self._failed(job, error)
         finally:
             self._desk.show(planning="", stage="")
         return 0.0
+
+    def _failed(self, job: Job, error: LinedrawError) -> None:
+        if self._planned:
+            self._desk.trouble(f"its program is whole, the pictures of its plan are not: {error}", job=job.id)
+        elif not self._again(job, error):
+            self._allotment.end(job.id, failed=str(error))
 
     def _again(self, job: Job, error: LinedrawError) -> bool:
         """Another machine may reach farther; a worker that died may have died of something else than this picture.
@@ -84,4 +91,16 @@ class Planning:
             raise BadPicture(f"the picture of job {job.id} has gone from {folder}: drop it into the inbox again")
         self._desk.show(planning=job.id)
         show = self._desk.show
-        self._pool.plan(source, folder, job.machine, name=job.name, progress=lambda stage: show(stage=stage))
+
+        def planned() -> None:
+            self._planned = True
+            self._allotment.end(job.id)
+
+        self._pool.plan(
+            source,
+            folder,
+            job.machine,
+            name=job.name,
+            progress=lambda stage: show(stage=stage),
+            planned=planned,
+        )

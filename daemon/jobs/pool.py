@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -37,18 +37,47 @@ class Pool:
         self.settings = settings
         """What is asked from now on; the limits of a worker are those of its start."""
         self._lock = threading.Lock()
+        self._drawable: Path | None = None
+        """The folder whose program can be drawn while the worker still makes its pictures."""
+        self._whole = threading.Condition()
         self._worker: _Worker | None = None
         self._closed = False
 
     def plan(
-        self, source: Path, folder: Path, machine: str, *, name: str = "", progress: Callable[[str], None]
+        self,
+        source: Path,
+        folder: Path,
+        machine: str,
+        *,
+        name: str = "",
+        progress: Callable[[str], None],
+        planned: Callable[[], None] = lambda: None,
     ) -> None:
         """Fill the job's folder with its plan. `progress` is told the name of each stage as it begins.
 
-        name: what people call the picture, if not by the path of `source`.
+        name: what people call the picture, if not by the path of `source`. planned: called as soon as the program can
+        be drawn; what is raised from then on is about the pictures of the plan.
         """
         request = {"ask": "plan", "source": str(source), "name": name, "folder": str(folder), "machine": machine}
-        self._ask(request, progress)
+
+        def drawable() -> None:
+            self._let_draw(folder)
+            planned()
+
+        try:
+            self._ask(request, progress, drawable)
+        finally:
+            self._let_draw(None)
+
+    def await_pictures(self, folder: Path) -> None:
+        """Wait until the worker writes nothing into this folder any more, well or badly. From any thread."""
+        with self._whole:
+            self._whole.wait_for(lambda: self._drawable != folder)
+
+    def _let_draw(self, folder: Path | None) -> None:
+        with self._whole:
+            self._drawable = folder
+            self._whole.notify_all()
 
     def measure(self, folder: Path, machine: str) -> None:
         """Compare the ink in `ink.json` with the picture."""
@@ -66,10 +95,12 @@ class Pool:
         with self._lock:
             self._drop()
 
-    def _ask(self, request: dict[str, Any], progress: Callable[[str], None]) -> None:
+    def _ask(
+        self, request: dict[str, Any], progress: Callable[[str], None], planned: Callable[[], None] = lambda: None
+    ) -> None:
         request["settings"] = self.settings.model_dump(mode="json")
         with self._lock:
-            answer = self._answer(request, progress)
+            answer = self._answer(request, progress, planned)
             if answer.get("words") == "out of memory":
                 self._drop()
                 limit_mb = self.settings.planning.memory_mb
@@ -79,14 +110,24 @@ class Pool:
         if "failed" in answer:
             raise getattr(errors, answer["failed"])(answer["words"])
 
-    def _answer(self, request: dict[str, Any], progress: Callable[[str], None]) -> dict[str, Any]:
+    def _answer(
+        self, request: dict[str, Any], progress: Callable[[str], None], planned: Callable[[], None]
+    ) -> dict[str, Any]:
         answer: dict[str, Any] | None = None
         try:
-            answer = self._started().ask(request, self.settings.planning.time_limit_s, progress)
+            limit_s = self.settings.planning.time_limit_s
+            for said in self._started().ask(request, limit_s):
+                if "progress" in said:
+                    progress(said["progress"])
+                elif "planned" in said:
+                    planned()
+                else:
+                    answer = said
         finally:
             # Whatever was thrown: what a worker says from here on would answer another question.
             if answer is None:
                 self._drop()
+        assert answer is not None
         return answer
 
     def _started(self) -> _Worker:
@@ -143,7 +184,8 @@ class _Worker:
     def alive(self) -> bool:
         return self._process.poll() is None
 
-    def ask(self, request: dict[str, Any], limit_s: float, progress: Callable[[str], None]) -> dict[str, Any]:
+    def ask(self, request: dict[str, Any], limit_s: float) -> Iterator[dict[str, Any]]:
+        """What it says, to its last word."""
         until = time.monotonic() + limit_s
         try:
             self._in.write(json.dumps(request).encode() + b"\n")
@@ -151,9 +193,9 @@ class _Worker:
             raise self._died() from None
         while True:
             answer: dict[str, Any] = json.loads(self._line(until, limit_s))
-            if "progress" not in answer:
-                return answer
-            progress(answer["progress"])
+            yield answer
+            if answer.keys() & {"done", "failed"}:
+                return
 
     def _line(self, until: float, limit_s: float) -> bytes:
         with selectors.DefaultSelector() as ears:

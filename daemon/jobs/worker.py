@@ -2,7 +2,8 @@
 
 A request is `{"ask": "plan" | "measure", "source": PATH, "name": TEXT, "folder": PATH, "machine": NAME,
 "settings": {...}}`.
-Answers are `{"progress": STAGE}`, then `{"done": true}` or `{"failed": ERROR, "words": SENTENCE}`.
+Answers are `{"progress": STAGE}`, `{"planned": true}` once the program can be drawn, then `{"done": true}` or
+`{"failed": ERROR, "words": SENTENCE}`.
 Whatever is no LinedrawError, full disk or lack of memory ends the process with a traceback: the daemon starts another.
 """
 
@@ -76,7 +77,7 @@ def _own_stdout() -> TextIO:
 def _answer(planner: ModuleType, request: dict[str, Any], say: Callable[[dict[str, Any]], None]) -> bool:
     """False when the process should not be kept."""
     try:
-        _work(planner, request, lambda stage: say({"progress": stage}))
+        _work(planner, request, say)
     except LinedrawError as error:
         say({"failed": type(error).__name__, "words": str(error)})
     except MemoryError:
@@ -92,12 +93,18 @@ def _answer(planner: ModuleType, request: dict[str, Any], say: Callable[[dict[st
     return True
 
 
-def _work(planner: ModuleType, request: dict[str, Any], progress: Callable[[str], None]) -> None:
+def _work(planner: ModuleType, request: dict[str, Any], say: Callable[[dict[str, Any]], None]) -> None:
     settings = Settings.model_validate(request["settings"])
     folder = Path(request["folder"])
     if request["ask"] == "plan":
         planner.plan_picture(
-            Path(request["source"]), folder, settings, request["machine"], name=request["name"], progress=progress
+            Path(request["source"]),
+            folder,
+            settings,
+            request["machine"],
+            name=request["name"],
+            progress=lambda stage: say({"progress": stage}),
+            planned=lambda: say({"planned": True}),
         )
     else:
         planner.measure_ink(folder, settings, request["machine"])

@@ -50,21 +50,22 @@ class Report:
     """Px of the page put right to machine mm: 2 x 3, as in Toolpath."""
     fidelity_of: FidelityOf
     """Which lines were compared with the page: the planned ones or the ink that a simulated machine has kept."""
-    fidelity: Fidelity
+    fidelity: Fidelity | None
+    """None until the planned ones have been compared."""
 
 
 def planned_report(
     pages: tuple[PageImage, PageImage],
     graph: LineGraph,
     toolpath: Toolpath,
-    fidelity: Fidelity,
+    fidelity: Fidelity | None,
     *,
     line_width_px: float,
     estimated_s: float,
     stage_s: Mapping[str, float],
     peak_memory_mb: float,
 ) -> Report:
-    """What is known once a job is planned; `fidelity` is that of its planned strokes.
+    """What is known once a job is planned; `fidelity` is that of its planned strokes, where it is known already.
 
     pages: the page put right, in whose px it is drawn, and the same scaled to be read.
     """
@@ -119,7 +120,9 @@ def from_json(text: str) -> Report:
     return Report(**{**found, "fidelity": _fidelity(found["fidelity"])})
 
 
-def _fidelity(found: dict[str, Any]) -> Fidelity:
+def _fidelity(found: dict[str, Any] | None) -> Fidelity | None:
+    if found is None:
+        return None
     lists = {name: tuple(Place(**place) for place in found[name]) for name in ("not_drawn", "not_on_ink")}
     return Fidelity(**found | lists)
 

@@ -24,7 +24,14 @@ STROKES_MM = (
 
 
 def plan_picture(
-    source: Path, folder: Path, settings: Settings, machine: str, *, name: str, progress: Callable[[str], None]
+    source: Path,
+    folder: Path,
+    settings: Settings,
+    machine: str,
+    *,
+    name: str,
+    progress: Callable[[str], None],
+    planned: Callable[[], None],
 ) -> None:
     corner = np.array(box_origin_mm(settings.sheet, settings.machines[machine]))
     from_px = np.hstack([np.eye(2), corner[:, None]])
@@ -35,6 +42,7 @@ def plan_picture(
     (folder / "strokes.json").write_text(json.dumps(strokes))
     (folder / "report.json").write_text(json.dumps({"from_px": from_px.tolist(), "real_s": None}))
     (folder / "program.gcode").write_text(program_text(program_of(toolpath, settings.machines[machine], folder.name)))
+    planned()
 
 
 def measure_ink(folder: Path, settings: Settings, machine: str) -> None:

@@ -17,7 +17,14 @@ from daemon.toolpath.reach import check_reach
 
 
 def plan_picture(
-    source: Path, folder: Path, settings: Settings, machine: str, *, name: str, progress: Callable[[str], None]
+    source: Path,
+    folder: Path,
+    settings: Settings,
+    machine: str,
+    *,
+    name: str,
+    progress: Callable[[str], None],
+    planned: Callable[[], None],
 ) -> None:
     settings = settings_for(folder, settings, machine)
     own, text = settings.machines[machine], source.read_text()
@@ -28,6 +35,7 @@ def plan_picture(
     check_reach(strokes, reach_mm=reach_mm(own), reach_low_mm=low_mm, park_mm=own.park_mm)
     toolpath = Toolpath(strokes, np.eye(2, 3), own.park_mm)
     (folder / "program.gcode").write_text(program_text(program_of(toolpath, own, folder.name)))
+    planned()
 
 
 def measure_ink(folder: Path, settings: Settings, machine: str) -> None:

@@ -25,7 +25,14 @@ _BAND_MM = 8.0
 
 
 def plan_picture(
-    source: Path, folder: Path, settings: Settings, machine: str, *, name: str, progress: Callable[[str], None]
+    source: Path,
+    folder: Path,
+    settings: Settings,
+    machine: str,
+    *,
+    name: str,
+    progress: Callable[[str], None],
+    planned: Callable[[], None],
 ) -> None:
     progress("program")
     corner = np.array(box_origin_mm(settings.sheet, settings.machines[machine]))
@@ -37,6 +44,7 @@ def plan_picture(
     write_durably(folder / "report.json", json.dumps(report).encode())
     program = program_of(toolpath, settings.machines[machine], folder.name)
     write_durably(folder / "program.gcode", program_text(program).encode())
+    planned()
 
 
 def measure_ink(folder: Path, settings: Settings, machine: str) -> None:

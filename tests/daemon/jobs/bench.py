@@ -16,6 +16,7 @@ from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import JobFolders
 from daemon.jobs.journal import Journal
+from daemon.jobs.kept_ink import Reports
 from daemon.jobs.moves import GrblMoves
 from daemon.jobs.open_machine import InkMm
 from daemon.jobs.orders import Places, rectangle_mm
@@ -160,7 +161,7 @@ class Bench:
             self.station,
             opened=self.machine.open,
             load=self._load,
-            measure=lambda folder: self.pool.measure(folder, "plotter"),
+            reports=Reports(self.pool.await_pictures, lambda folder: self.pool.measure(folder, "plotter")),
             moves=GrblMoves(GrblMachine()),
             places=Places((1.0, 2.0), lambda job: rectangle_mm((0.0, 0.0), (10.0, 20.0)), lambda: Program((), 0)),
             now=lambda: self.now_s,

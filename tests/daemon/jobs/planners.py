@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -31,7 +32,14 @@ G0 X0 Y0
 
 
 def plan_picture(
-    source: Path, folder: Path, settings: Settings, machine: str, *, name: str, progress: Callable[[str], None]
+    source: Path,
+    folder: Path,
+    settings: Settings,
+    machine: str,
+    *,
+    name: str,
+    progress: Callable[[str], None],
+    planned: Callable[[], None],
 ) -> None:
     progress("decode")
     text = source.read_text()
@@ -46,12 +54,24 @@ def plan_picture(
     (folder / "program.gcode").write_text(PROGRAM)
     (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None}))
     (folder / "environment.json").write_text(json.dumps(dict(os.environ)))
+    planned()
+    if text in AT_REST:
+        WAYS[AT_REST[text]]()
+    if text == "waits at rest":
+        while not (folder / "go on").exists():
+            time.sleep(0.001)
+        (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None}))
+        (folder / "whole").touch()
 
 
 def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     ink = json.loads((folder / "ink.json").read_text())
     report = json.loads((folder / "report.json").read_text()) | {"ink_strokes": len(ink["strokes"])}
     (folder / "report.json").write_text(json.dumps(report))
+
+
+AT_REST = {f"{way} at rest": way for way in ("crash", "eat", "fill")}
+"""What goes wrong behind the program."""
 
 
 def _crash() -> None:

@@ -21,6 +21,7 @@ from daemon.jobs.desk import Desk
 from daemon.jobs.drawing import Drawing
 from daemon.jobs.folder import CLAIMED, JobFolders, write_durably
 from daemon.jobs.journal import Journal
+from daemon.jobs.kept_ink import Reports
 from daemon.jobs.moves import GrblMoves
 from daemon.jobs.orders import Places
 from daemon.jobs.planning import Planning
@@ -60,11 +61,12 @@ class Plotter(InstantMachine):
 
 
 class Planner:
-    def plan(self, source: Path, folder: Path, machine: str, **options: Any) -> None:
+    def plan(self, source: Path, folder: Path, machine: str, *, planned: Callable[[], None], **options: Any) -> None:
         write_durably(folder / "report.json", b"{}")
         write_durably(
             folder / "program.gcode", PROGRAM.replace("(linedrawd: 2", "(linedrawd: 3").encode() + THIRD.encode()
         )
+        planned()
 
 
 class House:
@@ -83,7 +85,7 @@ class House:
             self.station,
             opened=self.machine.open,
             load=self._load,
-            measure=lambda folder: None,
+            reports=Reports(lambda folder: None, lambda folder: None),
             moves=GrblMoves(GrblMachine()),
             places=Places((0.0, 0.0), lambda job: [], lambda: Program((), 0)),
         )
