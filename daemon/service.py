@@ -18,6 +18,7 @@ from daemon.intake.watch import RESCAN_S, InboxWatch
 from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.choices import Choices
 from daemon.jobs.orders import MachineOrder
+from daemon.jobs.pressing import Pressing
 from daemon.jobs.retention import Retention
 from daemon.jobs.scanning import Scanning
 from daemon.notify import Notifier
@@ -65,6 +66,7 @@ class Service:
         self._inboxes, self._unseen = settings.inboxes, set(settings.inboxes)
         self._watches = [self._watch_of(machine) for machine in self._inboxes]
         self._scanning = Scanning(settings, say=parts.diary.say, trouble=parts.desk.trouble)
+        self._pressing = Pressing(settings.button, self._pressed, say=parts.diary.say, trouble=parts.desk.trouble)
         self._control = ControlServer(paths.control, self._obey)
 
     def _watch_of(self, machine: str) -> InboxWatch:
@@ -104,6 +106,14 @@ class Service:
         names = " or ".join(sign_of("NEXT", name, self._settings) for name in self._settings.machines)
         self._parts.desk.trouble(f"NEXT or PEN of which machine? put {names} there, PEN likewise")
 
+    def _pressed(self) -> None:
+        """The button was."""
+        button, stations = self._settings.button, self._parts.desk.stations
+        if button.does == "scan":
+            self._scanning.scan()
+        else:
+            stations[button.machine or next(iter(stations))].pressed()
+
     def run(self) -> bool:
         """True when it ended because it was told to."""
         parts = self._parts
@@ -119,7 +129,8 @@ class Service:
         }
         works |= {"plan": parts.runner.plan_on}
         works |= {f"inbox {number}": watch.run for number, watch in enumerate(self._watches)}
-        works |= {"scan": self._scanning.run, "control": self._control.run, "status": parts.board.run}
+        works |= {"scan": self._scanning.run, "button": self._pressing.run}
+        works |= {"control": self._control.run, "status": parts.board.run}
         threads = [threading.Thread(target=self._work, args=(work,), name=name) for name, work in works.items()]
         for thread in threads:
             thread.start()
@@ -168,6 +179,7 @@ class Service:
         parts.runner.end()
         for watch in self._watches:
             watch.stop()
+        self._pressing.end()
         self._scanning.end()
         self._control.stop()
         *others, board = threads

@@ -36,6 +36,7 @@ EXAMPLES: Mapping[str, Any] = {
     "corner": "lower left",
     "holds_bytes": 512,
     "holds_blocks": 10,
+    "line": 17,
 }
 """For keys that are not set unless somebody does."""
 _PATHS = {
@@ -44,7 +45,7 @@ _PATHS = {
     "log_dir": "/var/log/linedrawd",
     "runtime_dir": "/run/linedrawd",
 }
-_SAID = {("scanner", "kind"): "none"}
+_SAID = {("scanner", "kind"): "none", ("button", "kind"): "none"}
 """Said in the file, as is the device of a machine: a section without it would mean something else."""
 _WIDTH = 118
 _HEAD = """# The settings of linedrawd. Install as /etc/linedrawd/linedrawd.toml.
@@ -62,6 +63,7 @@ _SECTIONS = {
     "planning": "Limits of the worker process that plans, and how it reads a page.",
     "sheet": "Where on the sheet a picture is drawn, in mm inwards from the corner where the origin lies.",
     "scanner": "The scanner: which one, how it scans, and which button of its is heard.",
+    "button": "A button beside the machine: a key of a keyboard or foot switch, or a button at a pin of the board.",
 }
 _PLOTTER = "The machine: one section [machines.NAME]. Positions are in mm of the sheet, or of the machine once homed."
 

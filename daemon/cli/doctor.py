@@ -20,6 +20,7 @@ from daemon.control import NoDaemon, Order, give_order
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.open_machine import OpenMachine
+from daemon.jobs.pressing import button_of
 from daemon.jobs.scanning import scanner_of
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.places import usual_file
@@ -42,8 +43,8 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "doctor",
         help=words,
-        description="Look at settings, folders, disk, clock, memory, network, scanner, ports and machines, and say of "
-        "each that it is ok, or what to do. The exit code is 1 when something is wrong.",
+        description="Look at settings, folders, disk, clock, memory, network, scanner, button, ports and machines, and "
+        "say of each that it is ok, or what to do. The exit code is 1 when something is wrong.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -84,6 +85,7 @@ def findings(args: argparse.Namespace, *, ask: bool = True) -> Iterator[Finding]
     yield from doctor.usb_findings(usb.look())
     yield _scanner(settings)
     runs = _runs(settings)
+    yield _button(settings, runs=runs)
     yield _daemon(settings, runs=runs)
     for name, machine in settings.machines.items() if ask or runs else ():
         yield from _machine(settings, name, machine, runs=runs)
@@ -121,6 +123,23 @@ def _scanner(settings: Settings) -> Finding:
             return Finding("scanner", "ok", scanner.name())
     except LinedrawError as error:
         return Finding("scanner", "wrong", str(error))
+
+
+def _button(settings: Settings, *, runs: bool) -> Finding:
+    """Only opened: nobody has to press it. runs: a daemon does, which has a pin to itself."""
+    said = settings.button
+    where = f"line {said.line} at {said.chip}" if said.kind == "gpio" else f"{said.path}, key {said.key}"
+    button = button_of(said.model_copy(update={"grab": False}))
+    if button is None:
+        return Finding("button", "ok", "none is set")
+    if runs and said.kind == "gpio":
+        return Finding("button", "ok", f"{where}; the daemon has it, linedrawd.log tells of its troubles")
+    try:
+        with closing(button):
+            button.open()
+    except LinedrawError as error:
+        return Finding("button", "wrong", str(error))
+    return Finding("button", "ok", where)
 
 
 def _runs(settings: Settings) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from daemon.config.button import Button
 from daemon.config.load import DEFAULT_MACHINE, Options, Settings, load_settings
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine, DobotMachine, EmcoMachine, GrblMachine, Machine
 from daemon.config.paths import Paths
@@ -14,6 +15,7 @@ __all__ = [
     "DEFAULT_MACHINE",
     "SIMULATED_GRBL",
     "AnyMachine",
+    "Button",
     "DobotMachine",
     "EmcoMachine",
     "GrblMachine",

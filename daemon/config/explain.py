@@ -23,7 +23,10 @@ def explain(error: ValidationError, place: str, sections: Mapping[str, Any]) -> 
 
 
 def _one(loc: Place, kind: str, words: str, place: str, sections: Mapping[str, Any]) -> str:
-    *section, key = [str(part) for part in _as_written(loc)] or ["?"]
+    if not loc:
+        # Several sections that do not go together: the words name them.
+        return f"{place}: {words.removeprefix('Value error, ')}"
+    *section, key = [str(part) for part in _as_written(loc)]
     where = f"{place}: [{'.'.join(section)}] {key}" if section else f"{place}: {key}"
     if kind == "extra_forbidden":
         known = _known_names(loc, sections)

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
+from daemon.config.button import Button
 from daemon.config.explain import explain
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine
 from daemon.config.paths import Paths, paths_of
@@ -34,6 +35,7 @@ class Settings(Section):
     planning: Planning = Planning()
     sheet: Sheet = Sheet()
     scanner: Scanner = Scanner(kind="none")
+    button: Button = Button(kind="none")
     machines: dict[Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$")], AnyMachine]
 
     @field_validator("machines")
@@ -49,6 +51,7 @@ class Settings(Section):
         check_inboxes(self.inboxes)
         for name in self.machines:
             self.sheet_of(name)
+        self.button.check(list(self.machines), scans=self.scanner.kind != "none")
         return self
 
     @property
@@ -146,6 +149,7 @@ def _with_machine(raw: dict[str, Any], options: Options) -> dict[str, Any]:
         if options.machine not in machines:
             raise SettingsError(unknown(f"the machine {options.machine}", options.machine, list(machines)))
         machines = {options.machine: machines[options.machine]}
+        raw = _with_button_of_no_other(raw)
     said = _said_of_machine(options)
     if said and len(machines) > 1:
         raise SettingsError(
@@ -153,6 +157,12 @@ def _with_machine(raw: dict[str, Any], options: Options) -> dict[str, Any]:
             "say it in their sections"
         )
     return raw | {"machines": {name: _merged(machine, said) for name, machine in machines.items()}}
+
+
+def _with_button_of_no_other(raw: dict[str, Any]) -> dict[str, Any]:
+    """The button may be that of a machine which is not meant."""
+    button = raw.get("button")
+    return raw | {"button": button | {"machine": ""}} if isinstance(button, dict) else raw
 
 
 def _merged(machine: Any, said: dict[str, Any]) -> Any:

@@ -143,6 +143,24 @@ class Station:
         self.say("a new sheet is in")
         self.desk.wake()
 
+    def pressed(self) -> None:
+        """Somebody has pressed the button that says that a new sheet is in; where none is awaited, nothing changes."""
+        with self.desk.changed:
+            why = self._no_sheet_awaited()
+            if why:
+                self.say(f"the button was pressed, and {why}")
+                return
+            self.new_sheet()
+        if self.held:
+            self.say(self.show_held())
+
+    def _no_sheet_awaited(self) -> str:
+        if not self._asks_for_sheets:
+            return "no sheet is ever waited for: it draws on by itself, as sheet in its settings says"
+        if self.draws:
+            return "a drawing is not over: put a new sheet in when it is, and press again"
+        return "" if self.wants_a_sheet else "a new sheet is in already"
+
     def hold(self, words: str) -> None:
         """It begins no further job until a person says `go`, also after a restart."""
         try:
