@@ -165,7 +165,7 @@ def _known(given: VectorPage) -> Understood:
 def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages) -> Understood:
     with stages("page"):
         readable = put_right(given)
-        page = fit(readable)
+        page = fit(readable, fill=settings.planning.fill)
     with stages("vision"):
         segmentation = segmenter(settings.planning.threads).segment(page)
     with stages("graph"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from daemon.page.dark import turn_dark
 from daemon.page.dirt import clean_paper
+from daemon.page.fills import Fill, hollow
 from daemon.page.light import even_light, flatten_light, spread_tones
 from daemon.page.line_width import fit_line_width
 from daemon.page.ruling import take_off_ruling
@@ -30,9 +31,12 @@ def put_right(page: PageImage) -> PageImage:
     return clean_paper(spread_tones(warned_of_contrast(bare)))
 
 
-def fit(page: PageImage) -> PageImage:
-    """The page put right at the scale at which it is read, its line width known, with what there is to warn of."""
-    return warned_of_size(fit_line_width(page))
+def fit(page: PageImage, *, fill: Fill = "outline") -> PageImage:
+    """The page put right at the scale at which it is read, its line width known, with what there is to warn of.
+
+    fill: what becomes of areas that are wider than any line.
+    """
+    return hollow(warned_of_size(fit_line_width(page)), fill=fill)
 
 
 def even_out(page: PageImage) -> PageImage:
