@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Iterable
 from contextlib import closing
@@ -59,7 +60,15 @@ def run(args: argparse.Namespace) -> int:
                 print(error if named else f"{picture}: {error}", file=sys.stderr)
             else:
                 print(f"{picture} -> {folder}")
+                for words in _warnings(folder):
+                    print(f"{picture}: warning: {words}", file=sys.stderr)
     return 1 if failed else 0
+
+
+def _warnings(folder: Path) -> list[str]:
+    """What the report warns of."""
+    found: list[str] = json.loads((folder / "report.json").read_text(encoding="utf-8"))["warnings"]
+    return found
 
 
 def _check_exists(picture: Path) -> None:
