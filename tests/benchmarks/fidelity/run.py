@@ -18,19 +18,22 @@ from tests.benchmarks.fidelity.curves import curves
 from tests.benchmarks.fidelity.known import Known
 from tests.benchmarks.fidelity.measure import measure
 from tests.benchmarks.fidelity.ours import Understood, explained, understood
+from tests.benchmarks.fidelity.overdrawn import apart, overdrawn
 from tests.benchmarks.fidelity.overlay import overlay
 from tests.benchmarks.fidelity.photographed import hard_photos, photos
 from tests.benchmarks.fidelity.scanned import scans
 from tests.benchmarks.fidelity.sketches import SKETCHES, sketches
 from tests.benchmarks.fidelity.technical import technical
 
-SETS = ("quickdraw", "scribbles", "curves", "technical", "photo", "hard photo", "scan", "order")
+SETS = ("quickdraw", "scribbles", "curves", "technical", "photo", "hard photo", "scan", "overdrawn", "apart", "order")
 OWN: dict[str, Callable[[], list[Known]]] = {
     "curves": curves,
     "technical": technical,
     "photo": photos,
     "hard photo": hard_photos,
     "scan": scans,
+    "overdrawn": overdrawn,
+    "apart": apart,
 }
 
 
