@@ -136,7 +136,9 @@ def curved_pages(files: Sequence[Path], limit: int | None, *, worn: float) -> It
 
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", type=Path, help="an .onnx file or a checkpoint; default: the shipped network")
+    parser.add_argument(
+        "--model", type=Path, help="an .onnx file or a checkpoint; default: of the shipped two the one for that"
+    )
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--data", type=Path, nargs="+", help="Quick, Draw! ndjson, simplified form")
     what.add_argument("--pictures", type=Path, nargs="+", help="any pictures: the largest patch painted as a corner")
@@ -146,7 +148,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--json", action="store_true", help="only one line of JSON on stdout")
     parser.add_argument("--manifest", action="store_true", help="keep the figures in the manifest beside the model")
     given = parser.parse_args(arguments)
-    model = given.model or MODELS / load_manifest().file
+    model = given.model or MODELS / load_manifest("linedrawd" if given.pictures else "paper").file
     label_of = labeller(model, threads=given.threads)
     if given.pictures:
         print_corners(given.pictures, label_of)

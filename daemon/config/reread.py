@@ -12,6 +12,8 @@ AT_ONCE: Mapping[str, str] = {
     "sheet.*": "the next picture that is planned",
     "planning.time_limit_s": "the next picture that is planned",
     "planning.graph": "the next picture that is planned",
+    "planning.network": "the next picture that is planned",
+    "planning.fill": "the next picture that is planned",
     "planning.explain": "the next picture that is planned",
     "machines.*.draw_mm_s": "the next picture that is planned",
     "machines.*.resolution_mm": "the next picture that is planned",

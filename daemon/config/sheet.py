@@ -56,6 +56,8 @@ class Planning(Section):
     """Jobs that are planned before the machine is free for them."""
     graph: Literal["repaired", "paper"] = "repaired"
     """"paper" reads a page strictly by the equations of the paper; "repaired" lets the ink decide."""
+    network: Literal["linedrawd", "paper"] = "linedrawd"
+    """"paper" knows nothing but the paper's straight lines 2 px wide, and those better."""
     fill: Literal["outline", "skip"] = "outline"
     """What becomes of filled areas more than twelve line widths across: "skip" leaves them out."""
     explain: bool = False

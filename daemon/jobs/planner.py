@@ -29,7 +29,6 @@ from daemon.intake.vector.sheet import VectorPage
 from daemon.jobs.correction import told
 from daemon.jobs.devices import program_of, times_of
 from daemon.jobs.folder import source_of, write_all_durably, write_durably
-from daemon.jobs.pages import page_of
 from daemon.jobs.pictures import strokes_s, write_pictures
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
@@ -71,7 +70,7 @@ def plan_picture(
     """
     stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings, machine)
     with stages("decode"):
-        given = _opened(source, folder, settings, name)
+        given = _opened(source, settings, name)
     seen = _known(given) if isinstance(given, VectorPage) else _read(given, folder, settings, stages)
     readable, page = seen.readable, seen.page
     with stages("toolpath"):
@@ -108,7 +107,7 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     source = source_of(folder)
     if source is None:
         raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
-    given = _opened(source, folder, settings, str(source))
+    given = _opened(source, settings, str(source))
     readable = given.page if isinstance(given, VectorPage) else put_right(given)
     drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
     found = _fidelity_mm(readable, drawn, np.array(planned.from_px), planned.line_width_px)
@@ -147,13 +146,13 @@ class Stages:
 
 
 @lru_cache(maxsize=1)
-def segmenter(threads: int) -> Segmenter:
+def segmenter(network: str, threads: int) -> Segmenter:
     """Loaded once for all pictures of this process."""
-    return Segmenter(threads=threads)
+    return Segmenter(network, threads=threads)
 
 
-def _opened(source: Path, folder: Path, settings: Settings, name: str) -> PageImage | VectorPage:
-    return open_picture(source, page=page_of(folder), max_megapixels=settings.intake.max_megapixels, name=name)
+def _opened(source: Path, settings: Settings, name: str) -> PageImage | VectorPage:
+    return open_picture(source, max_megapixels=settings.intake.max_megapixels, name=name)
 
 
 def _known(given: VectorPage) -> Understood:
@@ -167,7 +166,7 @@ def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages) ->
         readable = put_right(given)
         page = fit(readable, fill=settings.planning.fill)
     with stages("vision"):
-        segmentation = segmenter(settings.planning.threads).segment(page)
+        segmentation = segmenter(settings.planning.network, settings.planning.threads).segment(page)
     with stages("graph"):
         graph = _graph(page, segmentation, folder, settings)
         on_page = _strokes(graph, page, settings)

@@ -92,13 +92,16 @@ def clock_finding(now_s: float, *, newest_s: float = 0.0) -> Finding:
 
 
 def network_finding(models: Path) -> Finding:
-    """The network that reads pages: there, and the one that was shipped. models: the folder of its manifest."""
+    """The networks that read pages: there, and those that were shipped. models: the folder of their manifests."""
+    sound = []
     for manifest in sorted(models.glob("*.json")):
         told = json.loads(manifest.read_text(encoding="utf-8"))
         file = models / told["file"]
         if not file.is_file() or hashlib.sha256(file.read_bytes()).hexdigest() != told["sha256"]:
             return Finding("network", "wrong", f"{file} is not the one that was shipped: install linedrawd again")
-        return Finding("network", "ok", f"{file.name}, {file.stat().st_size / 1e6:.1f} MB")
+        sound.append(f"{file.name}, {file.stat().st_size / 1e6:.1f} MB")
+    if sound:
+        return Finding("network", "ok", "; ".join(sound))
     return Finding("network", "wrong", f"{models} holds no network: install linedrawd again")
 
 
