@@ -6,7 +6,11 @@ Raise one where the fact is known; `cli` turns it into an exit code and `jobs/ru
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Sequence
+
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+"""What an OSError says of a folder that takes no more; `statvfs` knows of the first alone."""
 
 
 class LinedrawError(Exception):
@@ -33,6 +37,10 @@ class OutOfReach(LinedrawError):
 
 class DiskTrouble(LinedrawError):
     """A folder cannot be written: full, read-only, missing, or not ours."""
+
+
+class DiskFull(DiskTrouble):
+    """A folder takes no more: the disk is full, or what its owner may use of it is used up."""
 
 
 class SettingsError(LinedrawError):

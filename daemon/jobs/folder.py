@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from daemon.durable import PART, sync_folder, whole_file
-from daemon.errors import DiskTrouble
+from daemon.errors import NO_ROOM, DiskFull, DiskTrouble
 
 CLAIMED = ".claimed-"
 """A picture of an inbox on another file system, while it is being copied: `.claimed-JOB`."""
@@ -181,6 +181,5 @@ def _disk_trouble(place: Path) -> Iterator[None]:
     except FileNotFoundError:
         raise
     except OSError as error:
-        raise DiskTrouble(
-            f"{place} cannot be written ({error.strerror}): free the disk or correct its rights"
-        ) from None
+        trouble = DiskFull if error.errno in NO_ROOM else DiskTrouble
+        raise trouble(f"{place} cannot be written ({error.strerror}): free the disk or correct its rights") from None

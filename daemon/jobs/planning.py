@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from daemon.errors import BadPicture, DiskTrouble, LinedrawError, OutOfReach, PlanningFailed
+from daemon.errors import BadPicture, DiskFull, DiskTrouble, LinedrawError, OutOfReach, PlanningFailed
 from daemon.jobs.allotment import Allotment
 from daemon.jobs.desk import DISK_RETRY_S, Desk
 from daemon.jobs.folder import free_bytes, source_of
@@ -71,7 +71,7 @@ class Planning:
         dropped = self._desk.is_cancelled(job.id) or bool(self._desk.only)
         if not isinstance(error, PlanningFailed | DiskTrouble) or job.id in self._tried or dropped:
             return False
-        full = isinstance(error, DiskTrouble) and self._full()
+        full = isinstance(error, DiskFull) or (isinstance(error, DiskTrouble) and self._full())
         if not full:
             self._tried.add(job.id)
         if isinstance(error, DiskTrouble):

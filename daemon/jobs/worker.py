@@ -25,11 +25,11 @@ from types import ModuleType
 from typing import Any, TextIO
 
 from daemon.config import Settings
-from daemon.errors import LinedrawError
+from daemon.errors import NO_ROOM, DiskFull, DiskTrouble, LinedrawError
 
 _NICER = 10
 _PR_SET_PDEATHSIG = 1
-_DISK = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG, errno.EIO, errno.EACCES}
+_DISK = NO_ROOM | {errno.EROFS, errno.EIO, errno.EACCES}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -87,7 +87,8 @@ def _answer(planner: ModuleType, request: dict[str, Any], say: Callable[[dict[st
         if error.errno not in _DISK:
             raise
         place = error.filename or request["folder"]
-        say({"failed": "DiskTrouble", "words": f"{place}: {error.strerror}: free the disk or correct its rights"})
+        trouble = DiskFull if error.errno in NO_ROOM else DiskTrouble
+        say({"failed": trouble.__name__, "words": f"{place}: {error.strerror}: free the disk or correct its rights"})
     else:
         say({"done": True})
     return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -94,6 +95,10 @@ def _fill() -> None:
         full.write("no room\n")
 
 
+def _refuse() -> None:
+    raise PermissionError(errno.EACCES, "Permission denied", "strokes.json")
+
+
 def _mistake() -> None:
     raise KeyError("a mistake in the planner")
 
@@ -103,5 +108,6 @@ WAYS: dict[str, Callable[[], None]] = {
     "hang": _hang,
     "eat": _eat,
     "fill": _fill,
+    "refuse": _refuse,
     "mistake": _mistake,
 }

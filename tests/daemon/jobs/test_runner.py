@@ -210,9 +210,11 @@ def with_a_disk(bench: Bench, *, free_mb: float) -> None:
     )
 
 
-def test_a_full_disk_is_waited_for_by_every_picture(bench: Bench) -> None:
-    with_a_disk(bench, free_mb=1.0)
-    job = bench.drop("fill.png", "fill")
+@pytest.mark.parametrize(("free_mb", "what"), [(1.0, "refuse"), (1e6, "fill")])
+def test_a_full_disk_is_waited_for_by_every_picture(bench: Bench, free_mb: float, what: str) -> None:
+    """Also where there is room and it may not be used, as with a quota."""
+    with_a_disk(bench, free_mb=free_mb)
+    job = bench.drop("fill.png", what)
     bench.drop("good.png")
     for _ in range(4):
         bench.planning.turn()
@@ -228,7 +230,7 @@ def test_a_full_disk_is_waited_for_by_every_picture(bench: Bench) -> None:
 
 def test_a_folder_that_takes_nothing_fails_alone_after_another_try(bench: Bench) -> None:
     with_a_disk(bench, free_mb=1e6)
-    bench.drop("fill.png", "fill")
+    bench.drop("fill.png", "refuse")
     bench.drop("good.png")
     for state in ("queued", "failed"):
         bench.planning.turn()
