@@ -43,7 +43,14 @@ def drawn_job(settings: Settings) -> Seen:
     toolpath = Toolpath((Stroke(LINE),), from_px)
     figures = Fidelity(1.0, 0.9, 0.947, 0.8)
     planned = planned_report(
-        page, LineGraph(LINE, ()), toolpath, figures, line_width_px=2.0, estimated_s=9.0, stage_s={}, peak_memory_mb=1.0
+        (page, page),
+        LineGraph(LINE, ()),
+        toolpath,
+        figures,
+        line_width_px=2.0,
+        estimated_s=9.0,
+        stage_s={},
+        peak_memory_mb=1.0,
     )
     (folder / "report.json").write_text(to_json(executed_report(planned, figures, real_s=83.0)))
     return Seen(folder.name, "line.png", State.DONE, "")

@@ -19,11 +19,11 @@ _HEAD_BYTES = 4096
 _SVG = re.compile(rb"(?:\xef\xbb\xbf)?\s*<(?:\?xml|!--|!DOCTYPE\s+svg|svg)", re.IGNORECASE)
 
 
-def open_picture(path: Path, *, page: int = 1, max_megapixels: float = 100.0, name: str = "") -> PageImage | VectorPage:
+def open_picture(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> PageImage | VectorPage:
     """What lies in a file, told by its content: a raster as `decode` gives it, an SVG or DXF as a page of lines.
 
-    page: which of its pages, from 1 on. name: what people call the file, if not by its path. Raises BadPicture as
-    `decode` does, and for a vector file that is too large, damaged, or holds what is not drawn.
+    name: what people call the file, if not by its path. Raises BadPicture as `decode` does, and for a vector file that
+    is too large, damaged, or holds what is not drawn.
     """
     name = name or str(path)
     head = _head(path)

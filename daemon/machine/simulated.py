@@ -143,7 +143,8 @@ def simulator_of(
     The query may hold `speed`, `boot_s`, the pen (`pen_z` height in mm, or `pen_s=DOWN:UP` values of S), the homing
     `switches=X:Y:Z` in mm from where the pen stands first, in what its axes are crooked (`scale=X:Y`, `skew` in
     degrees, `backlash=X:Y` in mm), `$` settings by number, and faults: `hang`, `brownout`, `limit` and `unplug` in
-    seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0; `usb_ms` of a slow converter. What it says goes before the arguments.
+    seconds, or `@N` for behind the N-th ok; `drop`, `flip` and `lose_ok` by number from 0; `usb_ms` of a slow
+    converter. What it says goes before the arguments.
     Raises SettingsError for anything else.
     """
     parts = urlsplit(url)

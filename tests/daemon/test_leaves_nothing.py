@@ -33,14 +33,14 @@ def test_a_run_leaves_no_file_outside_its_folders(tmp_path: Path) -> None:
     for folder in (home, temporary, here, state_dir / "inbox"):
         folder.mkdir(parents=True)
     (state_dir / "inbox" / PICTURE.name).write_bytes(PICTURE.read_bytes())
-    assert "all 4 strokes are drawn" in run_until_drawn(state_dir, home=home, temporary=temporary, here=here)
+    assert "strokes are drawn" in run_until_drawn(state_dir, home=home, temporary=temporary, here=here)
     assert [path for folder in (home, temporary, here) for path in folder.rglob("*")] == []
     left = {path.relative_to(state_dir).as_posix() for path in state_dir.rglob("*")}
     assert {path for path in left if not path.startswith("jobs/000001-star/")} == {
-        "inbox", "jobs", "jobs/000001-star", "journal.sqlite", "lock", "log", "log/linedrawd.log", "pen.json",
+        "inbox", "jobs", "jobs/000001-star", "journal.sqlite", "lock", "log", "log/linedrawd.log", "pen-plotter.json",
         "run", "run/status.json",
     }  # fmt: skip
     assert {path.rpartition("/")[2] for path in left if path.startswith("jobs/000001-star/")} == {
-        "source.png", "strokes.json", "drawing.svg", "program.gcode", "preview.png", "explain.png", "report.json",
-        "arrival.json", "job.json", "job.log", "ink.json",
+        "source.png", "strokes.json", "drawing.svg", "program.gcode", "preview.png", "preview.html", "explain.png",
+        "report.json", "arrival.json", "job.json", "job.log", "ink.json",
     }  # fmt: skip

@@ -100,8 +100,8 @@ class Conversation:
             raise Broken(f"of {strokes} strokes: {ended}")
 
 
-def said_by(simulator: Simulator, session: Session, job: Sequence[JobLine]) -> bytes:
-    """What a simulated machine says in a whole job, as the head of an input to begin from."""
+def said_by(simulator: Simulator, session: Session, job: Sequence[JobLine], *, size: int = 17) -> bytes:
+    """What a simulated machine says in a whole job, as an input to begin from that comes `size` bytes at a time."""
     simulator.open(0.0)
     said, now, started = b"", 0.0, False
     while now < 600.0:
@@ -116,7 +116,7 @@ def said_by(simulator: Simulator, session: Session, job: Sequence[JobLine]) -> b
         simulator.receive(session.data_to_send(now), now)
         times = [at for at in (simulator.next_time(), session.deadline()) if at is not None]
         now = max(now + 1e-6, min(times, default=now + 1.0))
-    return b"\x10\x02\xff\xff" + said
+    return bytes((size - 1, 2, 255, 255)) + said
 
 
 def conversation(session: Callable[[], Session], job: Sequence[JobLine]) -> Callable[[bytes], None]:

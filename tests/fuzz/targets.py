@@ -161,7 +161,11 @@ TARGETS = {
     ),
     "dobot packets": Target(_dobot_packets, lambda: [said_by(dobot_from({}), _dobot(), DOBOT_JOB)]),
     "dobot lines": Target(_dobot_lines, lambda: [b"\n".join(line.text.encode() for line in DOBOT_JOB)]),
-    "dobot session": Target(conversation(_dobot, DOBOT_JOB), lambda: [said_by(dobot_from({}), _dobot(), DOBOT_JOB)]),
+    "dobot session": Target(
+        conversation(_dobot, DOBOT_JOB),
+        # An answer counts only when it comes after its question.
+        lambda: [said_by(dobot_from({}), _dobot(), DOBOT_JOB, size=6)],
+    ),
     "control line": Target(
         _control, lambda: [b'{"order": "jog", "x_mm": 3, "y_mm": -1e3, "job": "12", "seconds": 9}\n']
     ),

@@ -1,1 +1,1 @@
-"""Files that hold lines become drawings without being seen: SVG, DXF and PDF."""
+"""Files that hold lines become drawings without being seen: SVG and DXF."""
