@@ -2,7 +2,7 @@
 
 On the reference rendering (training/render.py). Pooled IoU over the three classes and their mean, the per-image mean
 beside it, corners found (a component of the corners channel whose centroid lies within 2 px of a true corner), and the
-mean IoU of each category. The default model is the one that is shipped. An ONNX file needs no PyTorch.
+mean IoU of each category. Without --model the paper's network is measured, on pictures the product's. An ONNX file needs no PyTorch.
 """
 
 from __future__ import annotations
@@ -169,6 +169,7 @@ def keep_figures(manifest: Path, summary: dict[str, object], given: argparse.Nam
     """Write the summary into the manifest, with the command that gives it again."""
     options = [("--data", given.data), ("--raw", given.raw or ())]
     words = [word for option, files in options if files for word in (option, *(file.name for file in files))]
+    words = ["--model", given.model.as_posix(), *words] if given.model else words
     words += ["--limit", str(given.limit)] if given.limit else []
     values = json.loads(manifest.read_text())
     values["figures"] = {"command": " ".join(["python -m training.evaluate", *words]), **summary}
