@@ -2,7 +2,8 @@
 
 On the reference rendering (training/render.py). Pooled IoU over the three classes and their mean, the per-image mean
 beside it, corners found (a component of the corners channel whose centroid lies within 2 px of a true corner), and the
-mean IoU of each category. Without --model the paper's network is measured, on pictures the product's. An ONNX file needs no PyTorch.
+mean IoU of each category. Without --model the paper's network is measured, on pictures the product's. An ONNX file
+needs no PyTorch.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ def plan_picture(
     )
     strokes = {"strokes": [points.tolist() for points in STROKES_MM]}
     (folder / "strokes.json").write_text(json.dumps(strokes))
-    (folder / "report.json").write_text(json.dumps({"from_px": from_px.tolist(), "real_s": None}))
+    (folder / "report.json").write_text(json.dumps({"from_px": from_px.tolist(), "real_s": None, "warnings": []}))
     (folder / "program.gcode").write_text(program_text(program_of(toolpath, settings.machines[machine], folder.name)))
     planned()
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from daemon.config import Settings
 from daemon.errors import BadPicture
 
+WARNINGS = ["the ink is very faint"]
 PROGRAM = """(linedrawd: 2 strokes)
 (no stroke)
 G21 G90
@@ -53,7 +54,7 @@ def plan_picture(
     strokes = [[[1, 1], [9, 1]], [[1, 5], [9, 5]]]
     (folder / "strokes.json").write_text(json.dumps({"strokes": strokes, "machine": machine, "nice": os.nice(0)}))
     (folder / "program.gcode").write_text(PROGRAM)
-    (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None}))
+    (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None, "warnings": WARNINGS}))
     (folder / "environment.json").write_text(json.dumps(dict(os.environ)))
     planned()
     if text in AT_REST:
@@ -61,7 +62,7 @@ def plan_picture(
     if text == "waits at rest":
         while not (folder / "go on").exists():
             time.sleep(0.001)
-        (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None}))
+        (folder / "report.json").write_text(json.dumps({"strokes": 2, "real_s": None, "warnings": WARNINGS}))
         (folder / "whole").touch()
 
 
