@@ -132,7 +132,7 @@ class Life:
         self._stale()
         self._debian.run("dpkg", "-i", self._deb)
         assert self._debian.main_pid() not in (0, before)
-        assert "held" not in self._debian.run("linedrawd", "status")
+        assert "\nheld " not in self._debian.run("linedrawd", "status")
         assert 'url = "sim://grbl"' in (self._root / _CONFIG).read_text()
         self._say("an upgrade between two drawings starts it anew, and keeps the settings")
 
@@ -154,7 +154,7 @@ class Life:
         assert "linedrawd draws, and goes on with the version that it runs" in said
         assert self._debian.main_pid() == before
         assert self._job_is("slow.png", "drawing")
-        assert "held" not in self._debian.run("linedrawd", "status")
+        assert "\nheld " not in self._debian.run("linedrawd", "status")
         self._say("an upgrade while it draws on a plotter in real time leaves it alone, and says so")
 
     def stop(self) -> None:
