@@ -14,12 +14,12 @@ from daemon.config import Settings
 from daemon.errors import BadPicture, DiskTrouble, SettingsError
 from daemon.intake.decode import decode
 from daemon.setup.card import Card, card_in
-from daemon.setup.find import Found, Homography, find_marks
+from daemon.setup.find import Found, find_marks
 from daemon.setup.fit import Errors, by_known_width, by_resolution, errors_of
 from daemon.setup.paper import paper_mm
 from daemon.setup.picture import found_picture
 from daemon.setup.sheet_edges import px_to_mm_by_sheet
-from daemon.shapes import PageImage
+from daemon.shapes import Homography, PageImage
 
 _NOISE_MM, _NOISE_DEG, _NOISE_SCALE = 0.02, 0.02, 0.0003
 """What a good machine seems to do wrong on a good scan."""

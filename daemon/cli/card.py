@@ -9,13 +9,13 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
+from daemon.cli.options import read_file
 from daemon.config import Machine, Options, Settings, load_settings
 from daemon.control import NoDaemon, Order, give_order
 from daemon.errors import NoMachine, SettingsError
 from daemon.jobs.card import card_programs, card_seconds, draw_card, gauge_words
 from daemon.jobs.devices import check, opened
 from daemon.jobs.open_machine import OpenMachine
-from daemon.places import usual_file
 from daemon.setup.edit import Values, lines_of, put_back, replace_file, with_keys
 
 HEAR_EVERY_S = 0.2
@@ -68,8 +68,7 @@ def attended(machine: OpenMachine, work: Callable[[], object]) -> None:
 
 def settings_file(args: argparse.Namespace, environment: dict[str, str]) -> Path:
     """The file that settings are written into: the one that is read, else the one that would be."""
-    given = getattr(args, "config", None)
-    found = Path(given) if given else usual_file(environment)
+    found = read_file(args, environment)
     if found:
         return found
     home = Path(environment.get("XDG_CONFIG_HOME") or Path(environment.get("HOME", "/nonexistent")) / ".config")

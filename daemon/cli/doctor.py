@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import time
 from collections.abc import Iterator
 from contextlib import closing, suppress
@@ -13,7 +12,7 @@ from typing import Any
 
 import daemon.models
 from daemon.cli import usb
-from daemon.cli.options import add_machine, add_places, settings_of
+from daemon.cli.options import add_machine, add_places, read_file, settings_of
 from daemon.cli.scan import add_scanner
 from daemon.config import Machine, Settings
 from daemon.control import NoDaemon, Order, give_order
@@ -23,7 +22,6 @@ from daemon.jobs.open_machine import OpenMachine
 from daemon.jobs.pressing import button_of
 from daemon.jobs.scanning import scanner_of
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
-from daemon.places import usual_file
 from daemon.setup import doctor
 from daemon.setup.doctor import Finding
 from daemon.shapes import Program
@@ -92,8 +90,7 @@ def findings(args: argparse.Namespace, *, ask: bool = True) -> Iterator[Finding]
 
 
 def _settings(args: argparse.Namespace, settings: Settings) -> Finding:
-    given = getattr(args, "config", None)
-    file = Path(given) if given else usual_file(dict(os.environ))
+    file = read_file(args)
     machines = ", ".join(f"{name} ({machine.device})" for name, machine in settings.machines.items())
     return Finding("settings", "ok", f"{file or 'no file, so what is usual'}; {machines}")
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from daemon.config import Options, Settings, load_settings
+from daemon.places import usual_file
 
 _PATHS = ("config", "state_dir", "inbox", "log_dir")
 
@@ -57,6 +60,12 @@ def add_record(parser: argparse.ArgumentParser) -> None:
 def record_of(args: argparse.Namespace) -> Path | None:
     """The file of `--record`; a file drop hears and says nothing that could be recorded."""
     return getattr(args, "record", None)
+
+
+def read_file(args: argparse.Namespace, environment: Mapping[str, str] = os.environ) -> Path | None:
+    """The file that the settings of this command line are read from, None where there is none."""
+    given = getattr(args, "config", None)
+    return Path(given) if given else usual_file(environment)
 
 
 def settings_of(args: argparse.Namespace, *, machine_needed: bool = False, one_machine: bool = False) -> Settings:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import platform
 import sys
 from collections.abc import Iterator
@@ -13,9 +12,9 @@ from typing import Any
 
 from daemon import __version__
 from daemon.cli import doctor
-from daemon.cli.options import add_places, settings_of
+from daemon.cli.options import add_places, read_file, settings_of
 from daemon.errors import LinedrawError
-from daemon.places import usual_file
+from daemon.jobs.folder import is_called
 from daemon.report.bundle import folder_files, tail, without_secrets, write_bundle
 from daemon.status import JOB_LOG_NAME, LOG_NAME
 
@@ -73,8 +72,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _folder(jobs: Path, wanted: str) -> Path:
     names = sorted(path.name for path in jobs.iterdir() if path.is_dir()) if jobs.is_dir() else []
-    number = f"{int(wanted):06d}-" if wanted.isdecimal() else "\0"
-    found = [name for name in names if name == wanted or name.startswith(number)]
+    found = [name for name in names if is_called(name, wanted)]
     if len(found) == 1:
         return jobs / found[0]
     raise LinedrawError(f"there is no job {wanted} in {jobs}: `linedrawd jobs` lists them")
@@ -86,8 +84,7 @@ def _of_job(folder: Path, *, pictures: bool) -> dict[str, Path]:
 
 
 def _settings(args: argparse.Namespace) -> str:
-    given = getattr(args, "config", None)
-    file = Path(given) if given else usual_file(dict(os.environ))
+    file = read_file(args)
     return _plain(file) if file else "# no file\n"
 
 

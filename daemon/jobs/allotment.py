@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 
 from daemon.jobs.desk import DROPPED, Desk
+from daemon.jobs.folder import number_of
 from daemon.jobs.journal import Job
 from daemon.jobs.states import Reason, State
 from daemon.jobs.station import Station
@@ -60,7 +61,7 @@ class Allotment:
             elif failed:
                 self._desk.step_at_last(job_id, State.FAILED, failed)
             elif self._asks(job_id) and job_id != self._desk.only:
-                page, number = self._desk.folders.path(job_id) / "preview.html", job_id.partition("-")[0].lstrip("0")
+                page, number = self._desk.folders.path(job_id) / "preview.html", number_of(job_id)
                 words = _TO_APPROVE.format(page=page, number=number)
                 self._desk.step_at_last(job_id, State.WAITING, words, reason=Reason.APPROVAL)
             else:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daemon.errors import DiskTrouble, LinedrawError
-from daemon.jobs.folder import JobFolders
+from daemon.jobs.folder import JobFolders, is_called
 from daemon.jobs.journal import Job, Journal
 from daemon.jobs.record import read_record, write_record
 from daemon.jobs.standing import forget_place
@@ -247,8 +247,8 @@ class Desk:
     def find(self, job_id: str) -> Job:
         """By its id or the number at its beginning. Raises LinedrawError."""
         job = self.journal.job(job_id)
-        if job is None and job_id.isdecimal():
-            job = next((job for job in self.journal.jobs() if job.id.startswith(f"{int(job_id):06d}-")), None)
+        if job is None:
+            job = next((job for job in self.journal.jobs() if is_called(job.id, job_id)), None)
         if job is None:
             raise LinedrawError(f"there is no job {job_id}: `linedrawd jobs` lists them")
         return job

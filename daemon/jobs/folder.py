@@ -58,11 +58,11 @@ class JobFolders:
 
     def __init__(self, root: Path) -> None:
         self.root = make_folder(root)
-        self._number = max((_number(name) for name in os.listdir(root)), default=0)
+        self._number = max((number_of(name) for name in os.listdir(root)), default=0)
 
     def go_on_behind(self, job_ids: Iterable[str]) -> None:
         """No number of these jobs is given again, though their folders may have gone."""
-        self._number = max([self._number, *map(_number, job_ids)])
+        self._number = max([self._number, *map(number_of, job_ids)])
 
     def path(self, job_id: str) -> Path:
         return self.root / job_id
@@ -169,9 +169,15 @@ def _slug(stem: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:24].strip("-") or "picture"
 
 
-def _number(name: str) -> int:
-    found = re.match(r"(\d+)-", name)
+def number_of(job_id: str) -> int:
+    """The number at its beginning, 0 where there is none."""
+    found = re.match(r"(\d+)-", job_id)
     return int(found.group(1)) if found else 0
+
+
+def is_called(job_id: str, wanted: str) -> bool:
+    """Whether a person who says `wanted`, an id or the number at its beginning, means this job."""
+    return job_id == wanted or (wanted.isdecimal() and job_id.startswith(f"{int(wanted):06d}-"))
 
 
 @contextmanager

@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from daemon.config import Settings
-from daemon.jobs.folder import write_durably
+from daemon.homography import through
+from daemon.jobs.folder import number_of, write_all_durably
 from daemon.jobs.sheet import box_origin_mm
-from daemon.page.back import on_given
 from daemon.program.svg import write_svg
 from daemon.report import canvas
 from daemon.report.explain import explain
@@ -40,16 +40,14 @@ def write_pictures(
     svg = write_svg(toolpath, size_mm=box_mm, corner_mm=corner_mm)
     lines = on_picture(toolpath, pages[1])
     html = preview_html(pages[0].grey, lines, toolpath, box_mm=box_mm, box_origin_mm=corner_mm, told=told)
-    write_durably(folder / "preview.png", canvas.png(sheet))
-    write_durably(folder / "explain.png", canvas.png(explain(*understood, name=told.name)))
-    write_durably(folder / "drawing.svg", svg.encode())
-    write_durably(folder / "preview.html", html.encode())
+    files = {"preview.png": canvas.png(sheet), "explain.png": canvas.png(explain(*understood, name=told.name))}
+    write_all_durably(folder, files | {"drawing.svg": svg.encode(), "preview.html": html.encode()})
 
 
 def on_picture(toolpath: Toolpath, readable: PageImage) -> list[Points]:
     """The strokes of a toolpath, each (N, 2) in px of the given picture. readable: the page that was put right."""
     back = invert(toolpath.from_px)
-    return [on_given(place(stroke.points, back), readable.to_given) for stroke in toolpath.strokes]
+    return [through(readable.to_given, place(stroke.points, back)) for stroke in toolpath.strokes]
 
 
 def strokes_s(program: Program, times_s: Sequence[float]) -> list[tuple[float, float]]:
@@ -66,5 +64,5 @@ def strokes_s(program: Program, times_s: Sequence[float]) -> list[tuple[float, f
 
 def _approval_of(folder: Path, settings: Settings) -> str:
     """The order by which a person has the job in this folder drawn; "" where it is drawn without."""
-    number = folder.name.partition("-")[0]
-    return f"linedrawd approve {int(number)}" if settings.intake.approve and number.isdecimal() else ""
+    number = number_of(folder.name)
+    return f"linedrawd approve {number}" if settings.intake.approve and number else ""

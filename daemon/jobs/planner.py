@@ -23,6 +23,7 @@ from daemon.errors import LinedrawError
 from daemon.graph.interpret import interpret, interpret_with_reasons
 from daemon.graph.strokes import strokes
 from daemon.graph.verdicts import as_json
+from daemon.homography import through
 from daemon.intake.picture import open_picture
 from daemon.intake.scanner import is_scan
 from daemon.intake.vector.sheet import VectorPage
@@ -32,7 +33,7 @@ from daemon.jobs.folder import source_of, write_all_durably, write_durably
 from daemon.jobs.pictures import strokes_s, write_pictures
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
-from daemon.page.back import given_px, on_given
+from daemon.page.back import given_px
 from daemon.page.prepare import fit, put_right
 from daemon.program.file import program_text
 from daemon.report.fidelity import Fidelity, fidelity
@@ -193,7 +194,7 @@ def _width_px(page: PageImage, readable: PageImage) -> float:
 
 
 def _moved(drawing: Drawing, to: Homography) -> tuple[Stroke, ...]:
-    return tuple(replace(stroke, points=on_given(stroke.points, to)) for stroke in drawing.strokes)
+    return tuple(replace(stroke, points=through(to, stroke.points)) for stroke in drawing.strokes)
 
 
 def _graph(page: PageImage, segmentation: Segmentation, folder: Path, settings: Settings) -> LineGraph:

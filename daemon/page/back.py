@@ -6,24 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from daemon.homography import through
 from daemon.page.tones import reduced
-from daemon.shapes import Grey, Homography, PageImage, Points, Step
+from daemon.shapes import Grey, Homography, PageImage, Step
 
 _SMALL_PX = 480
-
-
-def on_given(points: Points, to_given: Homography) -> Points:
-    """points: (N, 2) in px of a page. Returns (N, 2) in px of the given picture; equal points stay equal."""
-    x, y = points.T
-    u, v, w = (row[0] * x + row[1] * y + row[2] for row in to_given)
-    return np.stack([u / w, v / w], axis=1)
 
 
 def given_px(page: PageImage) -> float:
     """How many px of the given picture a px in the middle of the page is long."""
     height_px, width_px = page.grey.shape
     middle = np.array([(width_px - 1) / 2, (height_px - 1) / 2])
-    around = on_given(middle + np.array([[0, 0], [1, 0], [0, 1]]), page.to_given)
+    around = through(page.to_given, middle + np.array([[0, 0], [1, 0], [0, 1]]))
     across, down = around[1:] - around[0]
     return float(np.sqrt(abs(across[0] * down[1] - across[1] * down[0])))
 

@@ -8,7 +8,7 @@ from itertools import combinations
 import cv2
 import numpy as np
 
-from daemon.page.sides import Side
+from daemon.page.sides import Side, around
 from daemon.shapes import Grey, Points
 
 _MOST_LINES = 14
@@ -35,7 +35,7 @@ def quads(bare: Grey, *, least_px: float) -> Iterator[list[Side]]:
         if area >= least_px and _within(corners, bare.shape) and cv2.isContourConvex(corners.astype(np.float32)):
             found.append((area, corners))
     for _, corners in sorted(found, key=lambda each: -each[0]):
-        yield _sides(corners)
+        yield around(corners)
 
 
 def _lines(bare: Grey) -> Points:
@@ -74,9 +74,3 @@ def _crossing(one: Points, other: Points) -> Points:
 def _within(corners: Points, shape: tuple[int, ...]) -> bool:
     size = np.array(shape[1::-1])
     return bool(np.all((corners > -_MARGIN * size) & (corners < (1 + _MARGIN) * size)))
-
-
-def _sides(corners: Points) -> list[Side]:
-    if cv2.contourArea(corners.astype(np.float32), True) < 0:
-        corners = corners[::-1]
-    return [Side(a, b) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]

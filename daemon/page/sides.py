@@ -28,9 +28,12 @@ class Side:
     end: Points
 
     @property
+    def length(self) -> float:
+        return float(np.hypot(*(self.end - self.start)))
+
+    @property
     def along(self) -> Points:
-        way = self.end - self.start
-        return np.asarray(way / np.hypot(*way))
+        return np.asarray((self.end - self.start) / self.length)
 
     @property
     def inward(self) -> Points:
@@ -58,6 +61,13 @@ class Side:
         return np.array([a, b, b - far * self.inward, a - far * self.inward])
 
 
+def around(corners: Points) -> list[Side]:
+    """The sides between corners, (N, 2) in px, clockwise."""
+    if cv2.contourArea(corners.astype(np.float32), True) < 0:
+        corners = corners[::-1]
+    return [Side(a, b) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+
+
 def sides_of(hull: Points, shape: tuple[int, ...]) -> list[Side]:
     """The straight sides of a convex outline, clockwise, those along the picture's border left out.
 
@@ -66,16 +76,14 @@ def sides_of(hull: Points, shape: tuple[int, ...]) -> list[Side]:
     """
     length = cv2.arcLength(hull.astype(np.float32), True)
     corners = cv2.approxPolyDP(hull.astype(np.float32), 0.02 * length, True).reshape(-1, 2).astype(float)
-    if cv2.contourArea(corners.astype(np.float32), True) < 0:
-        corners = corners[::-1]
-    ends = zip(corners, np.roll(corners, -1, axis=0), strict=True)
     least = _LEAST_SIDE * min(shape)
-    return [Side(a, b) for a, b in ends if np.hypot(*(b - a)) >= least and not _on_border(a, b, (shape[0], shape[1]))]
+    return [side for side in around(corners) if side.length >= least and not _on_border(side, (shape[0], shape[1]))]
 
 
-def _on_border(a: Points, b: Points, shape: tuple[int, int]) -> bool:
+def _on_border(side: Side, shape: tuple[int, int]) -> bool:
     last = np.array([shape[1] - 1, shape[0] - 1])
-    near = [(np.minimum(a, b) > last - _NEAR_BORDER_PX), (np.maximum(a, b) < _NEAR_BORDER_PX)]
+    low, high = np.minimum(side.start, side.end), np.maximum(side.start, side.end)
+    near = [low > last - _NEAR_BORDER_PX, high < _NEAR_BORDER_PX]
     return bool(np.any(near))
 
 

@@ -14,7 +14,6 @@ from daemon.report.places import Place, places
 from daemon.shapes import PageImage, Points
 
 RECALL_WITHIN_PX = 1.5
-_HALO_PX = 128
 _SAMPLED_PX, _STROKES_AT_ONCE = 50_000, 5_000
 """So much line is looked at together."""
 _BESIDE = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TypeAlias
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import BadPicture
+from daemon.homography import through
 from daemon.setup.card import Card, Mark
-from daemon.shapes import Grey, Points
-
-Homography: TypeAlias = NDArray[np.float64]
-"""(3, 3) float64: mm of the card to px of the picture."""
+from daemon.shapes import Grey, Homography, Points
 
 _SMALL_PX = 1600
 """The longer side of the picture in which the frame is looked for."""
@@ -39,9 +36,10 @@ class Found:
 
 
 def find_marks(grey: Grey, card: Card) -> tuple[list[Found], Homography]:
-    """The marks that can be seen, and roughly where the card lies. grey: uint8 (H, W), as it was scanned.
+    """The marks that can be seen, and roughly where the card lies: its mm to px of the picture.
 
-    The card may lie turned by any angle, not mirrored. Raises BadPicture when it is not found, or too little of it.
+    grey: uint8 (H, W), as it was scanned. The card may lie turned by any angle, not mirrored. Raises BadPicture when it
+    is not found, or too little of it.
     """
     small, mask = _small_mask(grey)
     to_small = max(_ways_up(mask, card), key=lambda way: way[0], default=None)
@@ -63,12 +61,6 @@ def find_marks(grey: Grey, card: Card) -> tuple[list[Found], Homography]:
         middles = np.array([_middle(each.mark) for each in found])
         to_px = np.asarray(cv2.findHomography(middles, np.array([each.at_px for each in found]), 0)[0], float)
     return found, to_px
-
-
-def through(transform: Homography, points: Points) -> Points:
-    """Points (..., 2) taken through a homography."""
-    moved = np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1) @ transform.T
-    return np.asarray(moved[..., :2] / moved[..., 2:], float)
 
 
 def _middle(mark: Mark) -> tuple[float, float]:
@@ -115,9 +107,14 @@ def _frames(mask: Grey) -> Iterator[Points]:
     for hull in sorted(map(cv2.convexHull, outlines), key=cv2.contourArea, reverse=True)[:12]:
         corners = cv2.approxPolyDP(hull, 0.03 * cv2.arcLength(hull, True), True)[:, 0].astype(float)
         if len(corners) == 4:
-            # y runs down in a picture, so what looks counterclockwise has a negative area.
-            turned = cv2.contourArea(corners.astype(np.float32), oriented=True) < 0
-            yield corners if turned else corners[::-1]
+            yield counterclockwise(corners)
+
+
+def counterclockwise(corners: Points) -> Points:
+    """The same corners, (N, 2) in px, counterclockwise as one sees them."""
+    # y runs down in a picture, so what looks counterclockwise has a negative area.
+    turned = cv2.contourArea(corners.astype(np.float32), oriented=True) < 0
+    return corners if turned else corners[::-1]
 
 
 def _dense(line: Points) -> Points:

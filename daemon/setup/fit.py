@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import BadPicture
+from daemon.homography import through
 from daemon.setup.card import Card, Mark
-from daemon.setup.find import Found, Homography, through
-from daemon.shapes import Points
+from daemon.setup.find import Found
+from daemon.shapes import Homography, Points
 
 _OUTLIER_MM = 0.15
 _BENT_MM = 0.3

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
+from daemon.homography import through
 from daemon.setup.card import Card
-from daemon.setup.find import Found, Homography, through
-from daemon.shapes import Grey
+from daemon.setup.find import Found
+from daemon.shapes import Grey, Homography
 
 _MOST_PX = 2000
 _FOUND, _MEANT = (40, 150, 60), (50, 40, 215)

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 
 from daemon.errors import BadPicture
-from daemon.setup.find import Homography
-from daemon.shapes import Grey, Points
+from daemon.setup.find import counterclockwise
+from daemon.shapes import Grey, Homography, Points
 
 _SMALL_PX = 2400
 _OF_THE_PICTURE = 0.1
@@ -49,9 +49,7 @@ def _corners(outline: Points) -> Points:
         raise BadPicture(
             f"the sheet in the picture has {len(corners)} corners instead of four: lay it flat and take all of it"
         )
-    # y runs down in a picture, so what looks counterclockwise has a negative area.
-    if cv2.contourArea(corners.astype(np.float32), oriented=True) > 0:
-        corners = corners[::-1]
+    corners = counterclockwise(corners)
     sides = [_side(outline, corners[at], corners[(at + 1) % 4]) for at in range(4)]
     return np.array([_meet(sides[at - 1], sides[at]) for at in range(4)])
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from daemon.page.back import on_given
+from daemon.homography import through
 from daemon.page.prepare import prepare, put_right
 from daemon.shapes import Grey
 from tests.daemon.page.pages import drawn, grain, page
@@ -39,7 +39,7 @@ def test_every_page_becomes_one_whose_pixels_lead_back_into_the_given_picture(gr
     prepared = prepare(page(grey))
     high, wide = prepared.grey.shape
     corners = np.array([[-0.5, -0.5], [wide - 0.5, -0.5], [wide - 0.5, high - 0.5], [-0.5, high - 0.5]])
-    found = on_given(corners, prepared.to_given)
+    found = through(prepared.to_given, corners)
     limits = np.array(grey.shape[::-1])
     assert (found > -0.1 * limits - 1).all()
     assert (found < 1.1 * limits + 1).all()

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from daemon.page.back import on_given
+from daemon.homography import through
 from daemon.page.line_width import fit_line_width, line_width_px
 from daemon.shapes import Grey, Homography, PageImage, Points
 from tests.daemon.page.pages import drawn, grain, page
@@ -101,7 +101,7 @@ def middle_of_dot(grey: Grey) -> Points:
 
 
 def to_given(fitted: PageImage, points: Points) -> Points:
-    return on_given(points, fitted.to_given)
+    return through(fitted.to_given, points)
 
 
 @pytest.mark.parametrize(("width", "height"), [(301, 203), (300, 200)])

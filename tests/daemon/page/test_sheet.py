@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from daemon.page.back import on_given
+from daemon.homography import through
 from daemon.page.sheet import straighten
 from daemon.shapes import Grey, Points
 from tests.daemon.page.pages import drawn, grain, in_shadow, page
@@ -41,7 +41,7 @@ def turned(degrees: float) -> Points:
 def test_a_sheet_on_a_desk_becomes_the_page(corners: Points) -> None:
     straight = straighten(page(on_desk(corners)))
     height, width = straight.grey.shape
-    found = on_given(np.array([[0, 0], [width - 1, 0], [width - 1, height - 1], [0, height - 1]]), straight.to_given)
+    found = through(straight.to_given, np.array([[0, 0], [width - 1, 0], [width - 1, height - 1], [0, height - 1]]))
     assert np.abs(found - corners).max() < 7
     assert np.percentile(straight.grey, 99.5) - np.median(straight.grey) < 20
     assert (straight.grey < 110).mean() < 0.2
@@ -50,7 +50,7 @@ def test_a_sheet_on_a_desk_becomes_the_page(corners: Points) -> None:
 def test_what_is_drawn_leads_back_to_where_it_lies_in_the_picture() -> None:
     straight = straighten(page(on_desk(SQUARE)))
     y, x = np.nonzero(straight.grey < 90)
-    inked = np.rint(on_given(np.stack([x, y], axis=1).astype(float), straight.to_given)).astype(int)
+    inked = np.rint(through(straight.to_given, np.stack([x, y], axis=1).astype(float))).astype(int)
     assert (on_desk(SQUARE)[inked[:, 1], inked[:, 0]] < 150).mean() > 0.97
 
 
