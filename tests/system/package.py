@@ -132,7 +132,7 @@ class Life:
         self._stale()
         self._debian.run("dpkg", "-i", self._deb)
         assert self._debian.main_pid() not in (0, before)
-        assert "\nheld " not in self._debian.run("linedrawd", "status")
+        self._wait(self._none_is_held)
         assert 'url = "sim://grbl"' in (self._root / _CONFIG).read_text()
         self._say("an upgrade between two drawings starts it anew, and keeps the settings")
 
@@ -154,7 +154,7 @@ class Life:
         assert "linedrawd draws, and goes on with the version that it runs" in said
         assert self._debian.main_pid() == before
         assert self._job_is("slow.png", "drawing")
-        assert "\nheld " not in self._debian.run("linedrawd", "status")
+        self._wait(self._none_is_held)
         self._say("an upgrade while it draws on a plotter in real time leaves it alone, and says so")
 
     def stop(self) -> None:
@@ -204,6 +204,10 @@ class Life:
         logs = (self._root / _STATE / "jobs").glob("*/job.log")
         said = [text for text in (log.read_text() for log in logs) if f"name={picture}" in text]
         return any(f"state={state}" in text for text in said)
+
+    def _none_is_held(self) -> bool:
+        """As the status says, which is written at most once a second."""
+        return "held" not in self._debian.run("linedrawd", "status")
 
     def _is_there(self, path: str) -> bool:
         return bool(self._debian.run("sh", "-c", f"test -e {path} && echo yes", check=False))
