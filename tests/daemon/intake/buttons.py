@@ -7,11 +7,12 @@ import struct
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from queue import Queue
-from threading import Event, Semaphore, Thread
+from threading import Event, Semaphore
 from types import SimpleNamespace
 from typing import Any
 
 from daemon.intake.button import Button, ButtonTrouble, ButtonWatch
+from tests.daemon.intake.watching import watching
 
 UP, DOWN, HELD = 0, 1, 2
 ENTER, SPACE = 28, 57
@@ -94,14 +95,8 @@ class Ears:
             trouble=lambda words: self.heard.put(f"trouble: {words}"),
             retry_s=retry_s,
         )
-        thread = Thread(target=watch.run)
-        thread.start()
-        try:
+        with watching(watch):
             yield
-        finally:
-            watch.stop()
-            thread.join(10)
-        assert not thread.is_alive()
 
 
 class FakeGpiod:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event
 
 import pytest
 from watchdog.observers import Observer
@@ -15,17 +13,7 @@ from daemon.errors import SettingsError
 from daemon.intake.inbox import Inbox
 from daemon.intake.watch import InboxWatch
 from tests.daemon.intake.test_inbox import Desk
-
-
-@contextmanager
-def watching(watch: InboxWatch) -> Iterator[None]:
-    thread = Thread(target=watch.run)
-    thread.start()
-    try:
-        yield
-    finally:
-        watch.stop()
-        thread.join(10)
+from tests.daemon.intake.watching import watching
 
 
 @pytest.mark.parametrize("way", ["there before", "written", "renamed from .part", "moved in from outside"])

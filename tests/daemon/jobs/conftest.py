@@ -1,4 +1,4 @@
-"""One worker for the tests of a file, one bench for each test."""
+"""One worker for the tests of a file, one bench for each test, and a power that may be cut."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 from daemon.jobs.pool import Pool
 from tests.daemon.jobs.bench import Bench
+from tests.daemon.jobs.intake_bench import Cuts
 from tests.daemon.jobs.test_pool import PLANNER, settings_with
 
 
@@ -24,3 +25,8 @@ def bench(tmp_path: Path, shared_pool: Pool) -> Iterator[Bench]:
     bench = Bench(tmp_path, pool=shared_pool)
     yield bench
     bench.journal.close()
+
+
+@pytest.fixture(params=["same disk", "other disk"])
+def cuts(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Cuts:
+    return Cuts(monkeypatch, other_disk=request.param == "other disk")

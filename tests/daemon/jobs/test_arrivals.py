@@ -2,70 +2,24 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import pytest
 
-from daemon.config import Options, Settings, load_settings
 from daemon.errors import DiskTrouble, SettingsError
-from daemon.intake.rank import rank
-from daemon.jobs.allotment import Allotment
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
 from daemon.jobs.arrivals import Arrivals
-from daemon.jobs.desk import Desk
-from daemon.jobs.folder import JobFolders, source_of
-from daemon.jobs.journal import Journal
+from daemon.jobs.folder import source_of
 from daemon.jobs.states import State
-from daemon.jobs.station import Station
 from daemon.jobs.wishes import SIDE_NAME, settings_for
 from daemon.parts import parts_of
+from tests.daemon.jobs.intake_bench import Cuts, Intake
 from tests.daemon.jobs.test_folder import drop
 
-SKIP = "duplicates = 'skip'"
 WISHES = b"copies = 2\nsize_mm = 40\n"
-
-
-class Intake:
-    """An inbox, a state folder, and what takes pictures from the one to the other."""
-
-    def __init__(self, root: Path, intake: str = "", *, free: Callable[[Path], int] = lambda folder: 10**12) -> None:
-        self.inbox, file = root / "inbox", root / "linedrawd.toml"
-        self.inbox.mkdir(exist_ok=True)
-        file.write_text(f"[intake]\n{intake}\n")
-        self.settings: Settings = load_settings(Options(config=file, state_dir=root), environment={"HOME": str(root)})
-        self.journal = Journal(root / "journal.sqlite")
-        self.folders = JobFolders(root / "jobs")
-        order = self.settings.intake.order
-        self.desk = Desk(
-            self.journal,
-            self.folders,
-            say=_silent,
-            show=_silent,
-            rank=lambda name: rank(name, order),
-        )
-        self.station = Station(self.desk, "plotter", show=_silent, asks_for_sheets=False)
-        self.allotment = Allotment(self.desk)
-        self.arrivals = Arrivals(self.desk, self.settings, free=free)
-
-    def take(self, name: str = "house.png", side: str | None = "house.toml") -> None:
-        self.arrivals.take(self.inbox / name, self.inbox / side if side else None)
-
-    def recover(self) -> None:
-        self.arrivals.recover({"": self.inbox})
-        self.desk.recover()
-
-    def states(self) -> list[str]:
-        return [job.state.value for job in self.journal.jobs()]
-
-
-def _silent(*_: Any, **__: Any) -> None:
-    pass
 
 
 def test_a_side_file_asks_for_copies_and_goes_into_the_folder_of_each(tmp_path: Path) -> None:
@@ -126,61 +80,15 @@ def test_the_job_is_planned_by_its_own_wishes(tmp_path: Path) -> None:
     assert intake.settings.sheet.box_mm == (64.0, 64.0)
 
 
-class Cut(BaseException):
-    """The power goes."""
+def test_no_cut_loses_or_doubles_a_copy(tmp_path: Path, cuts: Cuts) -> None:
+    cuts.everywhere(tmp_path, _with_a_side_file, Intake.take, _after_the_cut, changes=range(16, 500))
 
 
-@pytest.fixture(params=["same disk", "other disk"])
-def cuts(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """The first entry counts down the changes of files until the cut; the others count up for ever."""
-    left = [-1]
-    rename = Path.rename
-
-    def counted(work: Callable[..., Any]) -> Callable[..., Any]:
-        def step(*args: Any, **options: Any) -> Any:
-            if left[0] == 0:
-                raise Cut
-            left[0] -= 1
-            return work(*args, **options)
-
-        return step
-
-    def across(self: Path, target: Path) -> Path:
-        if "inbox" in self.parts and "jobs" in Path(target).parts:
-            raise OSError(errno.EXDEV, "Invalid cross-device link")
-        return rename(self, target)
-
-    monkeypatch.setattr(Path, "rename", counted(across if request.param == "other disk" else rename))
-    for name in ("unlink", "mkdir"):
-        monkeypatch.setattr(Path, name, counted(getattr(Path, name)))
-    monkeypatch.setattr(os, "fsync", counted(lambda descriptor: None))
-    for record in ("add", "adopt", "step"):
-        monkeypatch.setattr(Journal, record, counted(getattr(Journal, record)))
-    return left
-
-
-def test_no_cut_loses_or_doubles_a_copy(tmp_path: Path, cuts: list[int]) -> None:
-    for steps in range(500):
-        cuts[0] = -1
-        root = tmp_path / str(steps)
-        root.mkdir()
-        intake = Intake(root)
-        drop(intake.inbox, "house.png")
-        drop(intake.inbox, "house.toml", WISHES)
-        cuts[0] = steps
-        try:
-            intake.take()
-        except Cut:
-            finished = False
-        else:
-            finished = True
-        cuts[0] = -1
-        intake.journal.close()
-        _after_the_cut(root)
-        if finished:
-            assert steps > 15
-            return
-    pytest.fail("it never came to its end")
+def _with_a_side_file(root: Path) -> Intake:
+    intake = Intake(root)
+    drop(intake.inbox, "house.png")
+    drop(intake.inbox, "house.toml", WISHES)
+    return intake
 
 
 def _after_the_cut(root: Path) -> None:
@@ -198,94 +106,6 @@ def _after_the_cut(root: Path) -> None:
         assert job.name == "house.png"
     assert list(intake.inbox.iterdir()) == []
     intake.journal.close()
-
-
-def test_the_same_picture_twice_is_drawn_twice(tmp_path: Path) -> None:
-    intake = Intake(tmp_path)
-    for name in ("a.png", "b.png"):
-        drop(intake.inbox, name)
-        intake.take(name, None)
-    assert intake.states() == ["queued", "queued"]
-
-
-def test_the_same_picture_twice_is_drawn_once_where_duplicates_are_skipped(tmp_path: Path) -> None:
-    for name, data in (("a.png", b"picture"), ("b.png", b"picture"), ("c.png", b"another")):
-        intake = Intake(tmp_path, "duplicates = 'skip'")
-        drop(intake.inbox, name, data)
-        intake.take(name, None)
-        words = intake.journal.jobs()[-1].words
-        intake.journal.close()
-        if name == "b.png":
-            assert words.startswith("the same picture as job 000001-a (duplicates = 'skip')")
-    assert intake.states() == ["queued", "cancelled", "queued"]
-    assert list(intake.inbox.iterdir()) == []
-
-
-def test_no_cut_loses_or_draws_what_is_skipped(tmp_path: Path, cuts: list[int]) -> None:
-    for steps in range(100):
-        cuts[0] = -1
-        root = tmp_path / str(steps)
-        root.mkdir()
-        intake = Intake(root, SKIP)
-        for name in ("a.png", "b.png"):
-            drop(intake.inbox, name)
-        intake.take("a.png", None)
-        cuts[0] = steps
-        try:
-            intake.take("b.png", None)
-        except Cut:
-            finished = False
-        else:
-            finished = True
-        cuts[0] = -1
-        intake.journal.close()
-        _after_the_second(root)
-        if finished:
-            assert steps > 5
-            return
-    pytest.fail("it never came to its end")
-
-
-def _after_the_second(root: Path) -> None:
-    intake = Intake(root, SKIP)
-    intake.recover()
-    if (intake.inbox / "b.png").exists():
-        intake.take("b.png", None)
-    first, second = intake.journal.jobs()
-    assert (first.state, second.state) == (State.QUEUED, State.CANCELLED)
-    assert (second.name, second.words.startswith("the same picture as job 000001-a")) == ("b.png", True)
-    source = source_of(intake.folders.path(second.id))
-    assert source is not None
-    assert source.read_bytes() == b"picture"
-    assert list(intake.inbox.iterdir()) == []
-    intake.journal.close()
-
-
-def test_what_was_skipped_stays_so_where_the_journal_is_lost(tmp_path: Path) -> None:
-    intake = Intake(tmp_path, SKIP)
-    for name in ("a.png", "b.png"):
-        drop(intake.inbox, name)
-        intake.take(name, None)
-    intake.journal.close()
-    for file in tmp_path.glob("journal.sqlite*"):
-        file.unlink()
-    after = Intake(tmp_path, SKIP)
-    after.recover()
-    assert after.states() == ["queued", "cancelled"]
-    after.journal.close()
-
-
-def test_a_picture_that_was_not_drawn_or_is_wished_otherwise_is_no_duplicate(tmp_path: Path) -> None:
-    intake = Intake(tmp_path, "duplicates = 'skip'")
-    drop(intake.inbox, "a.png")
-    intake.take("a.png", None)
-    intake.desk.step(intake.journal.jobs()[0].id, State.FAILED, "it could not be planned")
-    drop(intake.inbox, "a.png")
-    intake.take("a.png", None)
-    drop(intake.inbox, "a.png")
-    drop(intake.inbox, "a.toml", b"size_mm = 40")
-    intake.take("a.png", "a.toml")
-    assert intake.states() == ["failed", "queued", "queued"]
 
 
 def test_below_the_floor_of_free_disk_no_picture_is_taken(tmp_path: Path) -> None:
