@@ -33,7 +33,7 @@ def test_a_run_leaves_no_file_outside_its_folders(tmp_path: Path) -> None:
     for folder in (home, temporary, here, state_dir / "inbox"):
         folder.mkdir(parents=True)
     (state_dir / "inbox" / PICTURE.name).write_bytes(PICTURE.read_bytes())
-    assert "strokes are drawn" in run_until_drawn(state_dir, home=home, temporary=temporary, here=here)
+    assert "all 5 strokes are drawn" in run_until_drawn(state_dir, home=home, temporary=temporary, here=here)
     assert [path for folder in (home, temporary, here) for path in folder.rglob("*")] == []
     left = {path.relative_to(state_dir).as_posix() for path in state_dir.rglob("*")}
     assert {path for path in left if not path.startswith("jobs/000001-star/")} == {
