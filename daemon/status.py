@@ -95,7 +95,9 @@ class StatusBoard:
         self._changed.set()
 
     def change_machine(self, machine: str, **values: Any) -> None:
-        """What is told of this machine; the first call makes it known."""
+        """What is told of this machine; the first call makes it known. A new state has its own reason, or none."""
+        if "state" in values:
+            values = {"reason": ""} | values
         with self._lock:
             known = self._status.machines
             machines = {**known, machine: replace(known.get(machine, MachineStatus()), **values)}

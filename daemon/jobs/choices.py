@@ -10,14 +10,11 @@ from daemon.jobs.desk import Desk
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.journal import UNTOLD, Job
 from daemon.jobs.states import Reason, State
+from daemon.jobs.station import Station
 from daemon.jobs.wishes import SIDE_NAME
 from daemon.shapes import Program, ProgramLine
 
 _FROM_NAME = "from_stroke"
-NOT_PLACED = (
-    "the machine does not know where the sheet's origin is: put the pen there and say `linedrawd machine origin`, or "
-    "`linedrawd machine home`, then `linedrawd resume JOB --from-stroke K` again"
-)
 
 
 class Choices:
@@ -83,11 +80,20 @@ class Choices:
                 f"job {job.id} was drawn by {job.machine or '?'}, which is not set any more: say `again`"
             )
         if not self._placed(station.name):
-            raise LinedrawError(NOT_PLACED)
+            raise LinedrawError(not_placed(station))
         write_durably(self._desk.folders.path(job.id) / _FROM_NAME, str(stroke).encode())
         self._desk.step(job.id, State.WAITING, f"a person has it go on from stroke {stroke}")
         station.go()
         return f"job {job.id} goes on from stroke {stroke}"
+
+
+def not_placed(station: Station) -> str:
+    """Why it goes on with no drawing, and what a person does about it."""
+    return (
+        f"the machine does not know where the sheet's origin is: put the pen there and say "
+        f"{station.command('machine origin')}, or {station.command('machine home')}, then "
+        f"`linedrawd resume JOB --from-stroke K` again"
+    )
 
 
 def program_left(job: Job, folder: Path, program: Program, *, without: Sequence[ProgramLine]) -> Program:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
-from daemon.jobs.choices import NOT_PLACED, program_left
+from daemon.jobs.choices import not_placed, program_left
 from daemon.jobs.journal import Job
 from daemon.jobs.kept_ink import Reports, add_to_report, keep_ink
 from daemon.jobs.moves import Moves, homing
@@ -80,6 +80,7 @@ class Drawing:
             self._listen()
             return IDLE_S
         self._draw(job)
+        self.station.show_now()
         return 0.0
 
     def stop(self) -> None:
@@ -92,10 +93,11 @@ class Drawing:
         """Whatever went wrong, the machine is looked for without further waiting. May be called from any thread."""
         self._retry_at_s = float("-inf")
 
-    def drawn_on(self, instead: str = "`linedrawd stop` keeps the next drawing from starting") -> OpenMachine:
+    def drawn_on(self, instead: str = "") -> OpenMachine:
         """The machine, while it draws. May be called from any thread. Raises LinedrawError where nothing is drawn."""
         machine = self._machine
         if machine is None or self._progress is None:
+            instead = instead or f"{self.station.command('stop')} keeps the next drawing from starting"
             raise LinedrawError(f"nothing is being drawn: {instead}")
         return machine
 
@@ -122,8 +124,8 @@ class Drawing:
         self.missing, self._told = None, ""
         self.station.lost(missing=False)
         self.station.say("the machine is ready", port=self._machine.name, firmware=ready.firmware)
-        state = "held" if self.station.held else "idle"
-        self.station.show(state=state, port=self._machine.name, firmware=ready.firmware)
+        self.station.show(port=self._machine.name, firmware=ready.firmware)
+        self.station.show_now()
 
     def obey(self, order: MachineOrder) -> str:
         """Do it in this thread, which draws. Raises LinedrawError when it cannot be done."""
@@ -189,6 +191,7 @@ class Drawing:
         assert self._machine is not None
         why = self._machine.rests
         if why:
+            why += f" ({self.station.command('machine home')}, {self.station.command('machine origin')})"
             self.station.let_wait(why)
             forget_place(self._desk, "the motors were switched off", self.station)
         if bool(why) != self.station.missing:
@@ -213,15 +216,16 @@ class Drawing:
             self._desk.step_at_last(job.id, State.FAILED, str(error))
             return
         if job.possible and not self.placed:
-            self.station.hold(NOT_PLACED)
-            self._desk.step_at_last(job.id, State.INTERRUPTED, NOT_PLACED, reason=Reason.POSITION_UNKNOWN)
+            why = not_placed(self.station)
+            self.station.hold(why)
+            self._desk.step_at_last(job.id, State.INTERRUPTED, why, reason=Reason.POSITION_UNKNOWN)
             return
         times_s = self._machine.line_times_s(program)
         self._drawn = job.id
         self._progress = Progress(self.station.show, program, times_s, now=self._machine.now)
         self.station.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
-        self.asked.refuse(f"{job.name} is being drawn: wait for its end, or say `linedrawd stop`")
+        self.asked.refuse(f"{job.name} is being drawn: wait for its end, or say {self.station.command('stop')}")
         ended = self._ended(job, program, Ahead(self._promises(job, program), program, times_s))
         self._progress, self._drawn = None, ""
         self.asked.accept()
@@ -255,20 +259,12 @@ class Drawing:
         cancelled = self._desk.is_cancelled(job.id)
         goes_on_knowing, touched = known and not self._desk.ending, ended.strokes_possible > 0
         state, reason = outcome_of(ended.verdict, touched=touched, cancelled=cancelled, position_known=goes_on_knowing)
-        if self.station.held:
-            self.station.show_held()  # the last lines that were drawn have said otherwise meanwhile
-        else:
-            self._go_on_or_hold(_ENDED if self._desk.ending else ended.why, on=state in (State.CANCELLED, State.DONE))
+        if not self.station.held and state not in (State.CANCELLED, State.DONE):
+            self.station.hold(_ENDED if self._desk.ending else ended.why)
         extent, words = (ended.strokes_certain, ended.strokes_possible), end_in_words(ended, program.strokes)
         if state is State.INTERRUPTED:
             words += f"; {OUTCOMES[ended.verdict].remedy}, then {HOW_ON.format(job=job.id)}"
         self._desk.end_drawing(job.id, state, words, extent=extent, reason=reason, real_s=real_s, port=port)
-
-    def _go_on_or_hold(self, why: str, *, on: bool) -> None:
-        if on:
-            self.station.show(state="idle", words="")
-        else:
-            self.station.hold(why)
 
     def _give_back(self) -> None:
         self.close()
@@ -291,6 +287,6 @@ class Drawing:
         if self._progress:
             self._progress.hear(event)
         if isinstance(event, Paused | Resumed) or (isinstance(event, Waiting) and event.cause):
-            stand(event, self._drawn, self._desk, self.station.show)
+            stand(event, self._drawn, self.station)
         elif not isinstance(event, Accepted):
             tell(event, say=self.station.say, show=self.station.show)

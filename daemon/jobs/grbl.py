@@ -24,8 +24,6 @@ from firmware_protocol.grbl.states import State
 from firmware_protocol.ink import PenRule
 from firmware_protocol.session import Event
 
-_MOTORS_OFF = f"{MOTORS_OFF} with `linedrawd machine home` or `linedrawd machine origin`"
-
 
 def program_of(toolpath: Toolpath, machine: GrblMachine, name: str) -> Program:
     if machine.dialect == "paper":
@@ -95,7 +93,7 @@ def conversation(machine: GrblMachine, *, still: bool) -> Conversation[GrblSessi
         lift=Program((), 0) if machine.lift_after_restart else None,
         moved=moved if machine.origin == "here" else None,
         home=lambda session, now: session.home(now),
-        rests=lambda session: _MOTORS_OFF if session.state is State.RESTED else "",
+        rests=lambda session: MOTORS_OFF if session.state is State.RESTED else "",
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from daemon.errors import DiskTrouble
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from daemon.jobs.station import Station
 
 Stand: TypeAlias = Paused | Waiting | Resumed
-_PAUSED = "paused{where}, the pen is up: `linedrawd resume` goes on, `linedrawd stop` ends it"
+_PAUSED = "paused{where}, the pen is up: {resume} goes on, {stop} ends it"
 _GOES_ON = "the machine goes on"
 _CAUSES: dict[Literal["hold", "door", "sleep", ""], Reason] = {
     "hold": Reason.AT_THE_MACHINE,
@@ -24,15 +23,17 @@ _CAUSES: dict[Literal["hold", "door", "sleep", ""], Reason] = {
 }
 
 
-def stand(event: Stand, job_id: str, desk: Desk, show: Callable[..., None]) -> None:
+def stand(event: Stand, job_id: str, station: Station) -> None:
     """Record and tell it. job_id: of the job that is drawn; "" where the machine moves without one."""
-    state, reason, words = _what(event)
-    show(state=state.value, reason=reason.value, words="" if state is State.DRAWING else words)
-    job = desk.journal.job(job_id)
-    if job is None:
-        desk.say(words, level=logging.WARNING)
-    elif (job.state, job.reason) != (state, reason):
-        _step(desk, job_id, state, reason, words)
+    state, reason, words = _what(event, station)
+    # Whoever shows what the job says meanwhile waits for its step.
+    with station.desk.changed:
+        station.show(state=state.value, reason=reason.value, words="" if state is State.DRAWING else words)
+        job = station.desk.journal.job(job_id)
+        if job is None:
+            station.say(words, level=logging.WARNING)
+        elif (job.state, job.reason) != (state, reason):
+            _step(station.desk, job_id, state, reason, words)
 
 
 def forget_place(desk: Desk, why: str, station: Station | None = None) -> None:
@@ -54,11 +55,12 @@ def _step(desk: Desk, job_id: str, state: State, reason: Reason, words: str) -> 
         desk.trouble(str(error), job=job_id)
 
 
-def _what(event: Stand) -> tuple[State, Reason, str]:
+def _what(event: Stand, station: Station) -> tuple[State, Reason, str]:
     match event:
         case Paused(stroke=stroke):
             where = "" if stroke is None else f" before stroke {stroke}"
-            return State.PAUSED, Reason.PERSON, _PAUSED.format(where=where)
+            words = _PAUSED.format(where=where, resume=station.command("resume"), stop=station.command("stop"))
+            return State.PAUSED, Reason.PERSON, words
         case Waiting(why=why, cause=cause):
             return State.PAUSED, _CAUSES[cause], why
         case Resumed():

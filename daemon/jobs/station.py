@@ -46,8 +46,11 @@ class Station:
 
     @property
     def draws(self) -> bool:
+        return self._under_the_pen() is not None
+
+    def _under_the_pen(self) -> Job | None:
         drawing = self.desk.journal.jobs(*UNDER_THE_PEN) if self.desk.journal.count(*UNDER_THE_PEN) else []
-        return any(self.desk.station(job.machine) is self for job in drawing)
+        return next((job for job in drawing if self.desk.station(job.machine) is self), None)
 
     @property
     def away(self) -> bool:
@@ -77,7 +80,7 @@ class Station:
             if name not in self.desk.stations and not kept.knows(self.name):
                 self.hold(f"{name}, which is not set any more, was held ({why})")
         if self.held:
-            self.show_held()
+            self.show_now()
 
     def may_take(self, job: Job) -> bool:
         """It, or a machine that is set alike, is the one that the job was planned for."""
@@ -152,7 +155,7 @@ class Station:
                 return
             self.new_sheet()
         if self.held:
-            self.say(self.show_held())
+            self.say(self.show_now())
 
     def _no_sheet_awaited(self) -> str:
         if not self._asks_for_sheets:
@@ -167,17 +170,23 @@ class Station:
             self.desk.journal.hold(self.name, words)
         except DiskTrouble as error:
             self.trouble(str(error))
-        self.say(self.show_held(), level=logging.WARNING)
+        self.say(self.show_now(), level=logging.WARNING)
         self.desk.wake()
 
-    def show_held(self) -> str:
-        """Returns what is shown."""
-        words = f"no job starts until a person says {self.command('go')}: {self.held}"
-        self.show(state="held", words=words, held=self.held)
-        return words
+    def show_now(self) -> str:
+        """Show what is true: what it draws, what holds it, or that it is idle. Returns what holds it, in a sentence."""
+        with self.desk.changed:
+            held = self.held and f"no job starts until a person says {self.command('go')}: {self.held}"
+            state, reason, words = ("held" if held else "idle"), "", held
+            job = self._under_the_pen()
+            if job:
+                state, reason = job.state.value, job.reason.value
+                words = job.words if job.state is State.PAUSED else held
+            self.show(state=state, reason=reason, words=words, held=self.held)
+            return held
 
     def go(self) -> None:
         self.desk.journal.go(self.name)
         self.say("jobs may start again")
-        self.show(held="", state="idle", words="")
+        self.show_now()
         self.desk.wake()

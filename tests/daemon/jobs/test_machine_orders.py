@@ -127,7 +127,8 @@ def test_a_machine_that_rests_takes_no_job_until_it_has_an_origin(bench: Bench) 
     bench.machine.resting = "the motors are off: home the machine"
     bench.planned()
     bench.drawing.turn()
-    assert (bench.states(), bench.words()) == (["waiting"], "the motors are off: home the machine")
+    why = "the motors are off: home the machine (`linedrawd machine home`, `linedrawd machine origin`)"
+    assert (bench.states(), bench.words()) == (["waiting"], why)
     order(bench, "origin")
     assert bench.machine.closed == 1
     bench.drawing.turn()
