@@ -42,8 +42,10 @@ def write_gcode(toolpath: Toolpath, *, pen: Pen, draw_mm_s: float) -> Program:
     Positions in mm with 3 decimals. Every line states both of its coordinates, so that none depends on what another
     line left; F stands once a stroke, G1, G2 and G3 where they change. Arcs are G2 and G3 with I and J, the way from
     their start to their centre; rounding leaves their ends 0.002 mm off their circles at most, where GRBL refuses
-    0.005 (error:33), and none is a whole turn. A stroke of one point is a dot: the pen goes down and up. No M2 at the
-    end: GRBL would switch the spindle output, and with it a servo, off. Dialect: GRBL 1.1, also taken by grblHAL.
+    0.005 (error:33), and none is a whole turn. A stroke of one point is a dot: the pen goes down and up. A servo's turn
+    and the dwell behind it share a line: of the words of one the controller takes S and M3 first, then G4 (RS274/NGC,
+    order of execution), and moves only in the next. No M2 at the end: GRBL would switch the spindle output, and with
+    it a servo, off. Dialect: GRBL 1.1, also taken by grblHAL.
     Raises ValueError when draw_mm_s or the pen's plunge_mm_s is not positive.
     """
     if draw_mm_s <= 0 or (isinstance(pen, ZPen) and pen.plunge_mm_s <= 0):
@@ -90,7 +92,7 @@ def _engage(pen: Pen) -> tuple[str, ...]:
         case ZPen(down_mm=down_mm, plunge_mm_s=plunge_mm_s):
             return (f"G1 Z{_coordinate(down_mm)} F{_number(60 * plunge_mm_s)}",)
         case ServoPen(down_s=down_s, dwell_s=dwell_s):
-            return (f"M3 S{_number(down_s)}", f"G4 P{_number(dwell_s)}")
+            return (f"M3 S{_number(down_s)} G4 P{_number(dwell_s)}",)
 
 
 def _disengage(pen: Pen) -> tuple[str, ...]:
@@ -98,7 +100,7 @@ def _disengage(pen: Pen) -> tuple[str, ...]:
         case ZPen(up_mm=up_mm):
             return (f"G0 Z{_coordinate(up_mm)}",)
         case ServoPen(up_s=up_s, dwell_s=dwell_s):
-            return (f"M3 S{_number(up_s)}", f"G4 P{_number(dwell_s)}")
+            return (f"M3 S{_number(up_s)} G4 P{_number(dwell_s)}",)
 
 
 def _position(x_mm: float, y_mm: float) -> str:

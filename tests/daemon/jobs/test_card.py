@@ -159,4 +159,4 @@ def test_a_servo_pen_has_a_gauge_of_angles(tmp_path: Path) -> None:
     angles = [
         next(line.text for line in program.lines if line.stroke == 0 and "M3" in line.text) for program in programs[1:]
     ]
-    assert angles == [f"M3 S{800 - 30 * step}" for step in (3, 2, 1, 0, -1, -2, -3)]
+    assert angles == [f"M3 S{800 - 30 * step} G4 P0.2" for step in (3, 2, 1, 0, -1, -2, -3)]

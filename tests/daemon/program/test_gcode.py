@@ -31,7 +31,7 @@ def test_the_program_is_the_golden_one(pen: Pen, golden: Callable[[str, str], No
     golden(NAMES[pen], program_text(write_gcode(TOOLPATH, pen=pen, draw_mm_s=20)))
 
 
-@pytest.mark.parametrize(("pen", "lift"), [(Z, "G0 Z5.000"), (SERVO, "M3 S0")], ids=["z", "servo"])
+@pytest.mark.parametrize(("pen", "lift"), [(Z, "G0 Z5.000"), (SERVO, "M3 S0 G4 P0.25")], ids=["z", "servo"])
 def test_the_pen_is_raised_before_anything_moves(pen: Pen, lift: str) -> None:
     program = texts(write_gcode(TOOLPATH, pen=pen, draw_mm_s=20))
     assert program.index(lift) < next(i for i, text in enumerate(program) if "X" in text)
@@ -80,7 +80,7 @@ def test_every_line_is_one_that_grbl_takes(pen: Pen) -> None:
 def test_lifting_needs_nothing_that_was_said_before(pen: Pen) -> None:
     lift = lift_lines(pen)
     assert lift[0] == "G21 G90"
-    assert lift[1] == ("G0 Z5.000" if pen is Z else "M3 S0")
+    assert lift[1] == ("G0 Z5.000" if pen is Z else "M3 S0 G4 P0.25")
 
 
 @pytest.mark.parametrize(("pen", "draw_mm_s"), [(Z, 0.0), (ZPen(plunge_mm_s=0), 20.0)])
