@@ -6,6 +6,7 @@ import errno
 import hashlib
 import os
 import stat
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,8 @@ from numpy.typing import NDArray
 
 from daemon.errors import BadPicture
 from daemon.intake.header import Header, read_header
+from daemon.intake.pages import checked_page
+from daemon.intake.tags import is_tiff, page_directories, with_first
 from daemon.intake.tone import to_grey
 from daemon.shapes import Grey, PageImage
 
@@ -22,8 +25,8 @@ _MOST_BYTES_PER_PX = 16
 _MOST_OVERHEAD_BYTES = 64_000_000
 
 
-def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> PageImage:
-    """Reads a PNG, JPEG, TIFF (its first page), BMP, WebP or PNM file; its name and extension say nothing.
+def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "", page: int = 1) -> PageImage:
+    """Reads a PNG, JPEG, TIFF (one of its pages, from 1 on), BMP, WebP or PNM file; its name and extension say nothing.
 
     The size is read from the header and checked before anything is decoded. The page is upright as EXIF says, alpha
     lies over white, every depth becomes 8 bits. name: what people call the file, if not by its path. Raises BadPicture
@@ -32,16 +35,24 @@ def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "") -> Page
     """
     name = name or str(path)
     data = read_file(path, name, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
+    sha256 = hashlib.sha256(data).hexdigest()
+    data = _with_page_first(name, data, page)
     header = _checked_header(name, data, max_megapixels)
     grey = _upright(_grey(_pixels(name, data, header), header), header.turned)
+    return page_of(grey, sha256=sha256, px_per_mm=header.px_per_mm)
+
+
+def page_of(grey: Grey, *, sha256: str, px_per_mm: float | None = None, warnings: tuple[str, ...] = ()) -> PageImage:
+    """The page of these pixels, just as they were given."""
     height_px, width_px = grey.shape
     return PageImage(
         grey=grey,
         to_given=np.eye(3),
         given_width_px=width_px,
         given_height_px=height_px,
-        sha256=hashlib.sha256(data).hexdigest(),
-        px_per_mm=header.px_per_mm,
+        sha256=sha256,
+        px_per_mm=px_per_mm,
+        warnings=warnings,
     )
 
 
@@ -67,6 +78,19 @@ def _why_unread(name: str, error: OSError) -> str:
     if error.errno == errno.ELOOP:
         return f"{name} is a symbolic link, which is not followed: drop the picture itself"
     return f"{name} cannot be read ({error.strerror}): check that it is there and mend its rights"
+
+
+def _with_page_first(name: str, data: bytes, page: int) -> bytes:
+    """What is decoded of a TIFF is its first page. Every other picture is one page."""
+    try:
+        directories = page_directories(data) if is_tiff(data) else [0]
+    except (ValueError, struct.error) as error:
+        raise BadPicture(f"{name} is a TIFF that is damaged or cut short ({error}): copy it again") from error
+    try:
+        directory = directories[checked_page(page, len(directories)) - 1]
+    except ValueError as error:
+        raise BadPicture(f"{name} {error}") from error
+    return with_first(data, directory) if directory else data
 
 
 def _checked_header(name: str, data: bytes, max_megapixels: float) -> Header:

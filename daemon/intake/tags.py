@@ -10,7 +10,11 @@ Tags: TypeAlias = dict[int, tuple[float, ...]]
 
 WIDTH, HEIGHT, PHOTOMETRIC, ORIENTATION = 256, 257, 262, 274
 X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT = 282, 283, 296
+_KIND = 254
+_SMALLER_OR_MASK = 1 | 4
+_MOST_DIRECTORIES = 1_000
 
+_ORDERS = {b"II*\0": "<", b"MM\0*": ">"}
 _FORMATS = {1: "B", 3: "H", 4: "I", 5: "II", 6: "b", 8: "h", 9: "i", 10: "ii"}
 _RATIONALS = (5, 10)
 _MM_PER_UNIT = {2: 25.4, 3: 10.0}
@@ -22,13 +26,37 @@ def read_tags(data: bytes) -> Tags:
 
     Only the first four values of a tag are read. Raises ValueError or struct.error where data is no TIFF or cut short.
     """
-    order = {b"II*\0": "<", b"MM\0*": ">"}.get(data[:4])
-    if order is None:
-        raise ValueError("it is no TIFF with 32-bit offsets")
+    order = _order(data)
     (directory,) = struct.unpack_from(order + "I", data, 4)
-    (count,) = struct.unpack_from(order + "H", data, directory)
-    entries = (directory + 2 + 12 * index for index in range(count))
-    return {tag: values for tag, values in (_entry(data, at, order) for at in entries) if values}
+    return _directory(data, directory, order)[0]
+
+
+def is_tiff(data: bytes) -> bool:
+    return data[:4] in _ORDERS
+
+
+def page_directories(data: bytes) -> list[int]:
+    """Where the directory of each page of a TIFF file lies; smaller copies and masks of pages are left out.
+
+    Each is met once, also where they point at each other. Raises ValueError or struct.error where data is no TIFF or
+    cut short.
+    """
+    order = _order(data)
+    (first,) = struct.unpack_from(order + "I", data, 4)
+    at, pages, met = first, list[int](), set[int]()
+    while at and at not in met and len(met) < _MOST_DIRECTORIES:
+        met.add(at)
+        tags, following = _directory(data, at, order)
+        if not int(tags.get(_KIND, (0,))[0]) & _SMALLER_OR_MASK:
+            pages.append(at)
+        at = following
+    return pages or [first]
+
+
+def with_first(data: bytes, directory: int) -> bytes:
+    """The same TIFF file, its first page that of this directory."""
+    place = struct.pack(_order(data) + "I", directory)
+    return data if data[4:8] == place else b"".join((data[:4], place, memoryview(data)[8:]))
 
 
 def orientation(tags: Tags) -> int:
@@ -51,6 +79,22 @@ def px_per_mm(across: float, down: float, *, unit_mm: float) -> float | None:
     if min(across, down) <= 0 or max(across, down) > 1.02 * min(across, down):
         return None
     return across / unit_mm
+
+
+def _order(data: bytes) -> str:
+    order = _ORDERS.get(data[:4])
+    if order is None:
+        raise ValueError("it is no TIFF with 32-bit offsets")
+    return order
+
+
+def _directory(data: bytes, at: int, order: str) -> tuple[Tags, int]:
+    """Its tags, and where the next one lies; 0: there is none, or the file ends with this one."""
+    (count,) = struct.unpack_from(order + "H", data, at)
+    entries = (at + 2 + 12 * index for index in range(count))
+    tags = {tag: values for tag, values in (_entry(data, entry, order) for entry in entries) if values}
+    end = at + 2 + 12 * count
+    return tags, struct.unpack_from(order + "I", data, end)[0] if end + 4 <= len(data) else 0
 
 
 def _entry(data: bytes, at: int, order: str) -> tuple[int, tuple[float, ...]]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.shapes import Points
+from daemon.shapes import Grey, Points
 
 FLAT_MM = 0.01
 """A curve becomes chords that leave it by no more."""
@@ -32,6 +32,15 @@ class Vectors:
     width_mm: float
     height_mm: float
     sized: bool
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rendered:
+    """A page as it looks. grey: uint8 (H, W). px_per_mm: None where the file does not say it. warnings: as above."""
+
+    grey: Grey
+    px_per_mm: float | None = None
     warnings: tuple[str, ...] = ()
 
 
