@@ -139,7 +139,6 @@ def test_the_doctor_looks_whether_the_button_can_be_heard(
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(doctor, "_SERVICE", tmp_path / "service.sock")
-    monkeypatch.setattr("daemon.usb.look", list)
     file = tmp_path / "doctor.toml"
     file.write_text(f"[button]\n{button.format(keypad=keypad)}\n" if button else "")
     main(["doctor", "--json", "--device", "sim", "--config", str(file), "--state-dir", str(tmp_path / "state")])
