@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Iterable
 from contextlib import closing
@@ -12,7 +11,7 @@ from typing import Any
 
 from daemon.cli.options import add_places, add_which, settings_of
 from daemon.errors import LinedrawError
-from daemon.jobs.folder import make_folder
+from daemon.jobs.folder import make_folder, warnings_of
 from daemon.jobs.pool import Pool
 
 EXAMPLES = """examples:
@@ -60,15 +59,9 @@ def run(args: argparse.Namespace) -> int:
                 print(error if named else f"{picture}: {error}", file=sys.stderr)
             else:
                 print(f"{picture} -> {folder}")
-                for words in _warnings(folder):
+                for words in warnings_of(folder):
                     print(f"{picture}: warning: {words}", file=sys.stderr)
     return 1 if failed else 0
-
-
-def _warnings(folder: Path) -> list[str]:
-    """What the report warns of."""
-    found: list[str] = json.loads((folder / "report.json").read_text(encoding="utf-8"))["warnings"]
-    return found
 
 
 def _check_exists(picture: Path) -> None:

@@ -20,7 +20,7 @@ _LINE = re.compile(
     r"(?P<time>\S+) \w+ \S+ (?P<words>.*?) state=(?P<state>\w+)"
     r'(?: reason=(?:"(?P<quoted>[^"\\]*)"|(?P<reason>[^\s"]+)))?'
 )
-_FIGURES = ("strokes", "drawn_mm", "travelled_mm", "estimated_s", "real_s")
+_FIGURES = ("strokes", "drawn_mm", "travelled_mm", "estimated_s", "real_s", "warnings")
 _NAME = re.compile(r' name=("(?:[^"\\]|\\.)*"|\S+)')
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import re
 import shutil
@@ -167,6 +168,15 @@ def _source_name(picture: Path) -> str:
 def _slug(stem: str) -> str:
     plain = unicodedata.normalize("NFKD", stem).encode("ascii", "ignore").decode("ascii").lower()
     return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:24].strip("-") or "picture"
+
+
+def warnings_of(folder: Path) -> list[str]:
+    """What the report of a plan warns of; nothing where there is no report that can be read."""
+    try:
+        found: list[str] = json.loads((folder / "report.json").read_text(encoding="utf-8"))["warnings"]
+    except (OSError, ValueError, KeyError):
+        return []
+    return found
 
 
 def number_of(job_id: str) -> int:

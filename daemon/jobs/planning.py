@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 from daemon.errors import BadPicture, DiskFull, DiskTrouble, LinedrawError, OutOfReach, PlanningFailed
 from daemon.jobs.allotment import Allotment
 from daemon.jobs.desk import DISK_RETRY_S, Desk
-from daemon.jobs.folder import free_bytes, source_of
+from daemon.jobs.folder import free_bytes, source_of, warnings_of
 from daemon.jobs.journal import Job
 from daemon.jobs.pool import Pool
 from daemon.jobs.states import State
@@ -94,6 +95,8 @@ class Planning:
 
         def planned() -> None:
             self._planned = True
+            for words in warnings_of(folder):
+                self._desk.say(words, job=job.id, level=logging.WARNING)
             self._allotment.end(job.id)
 
         self._pool.plan(

@@ -30,6 +30,12 @@ def test_a_picture_is_planned_and_drawn(bench: Bench) -> None:
     assert bench.words() == "all 2 strokes are drawn"
 
 
+def test_what_the_report_of_a_plan_warns_of_stands_in_the_log_of_the_job(bench: Bench) -> None:
+    job = bench.planned()
+    (said,) = [values for words, values in bench.said if words == WARNINGS[0]]
+    assert said["job"] == job
+
+
 def test_two_jobs_are_planned_ahead_and_no_more(bench: Bench) -> None:
     for number in range(4):
         bench.drop(f"{number}.png")
