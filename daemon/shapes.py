@@ -54,6 +54,8 @@ class PageImage:
     """What was done to it, in order; empty for a page on which nothing had to be put right."""
     warnings: tuple[str, ...] = ()
     """What of it lies outside the range that is worked in, in plain words."""
+    hatching: tuple[Points, ...] = ()
+    """Lines in px that are drawn beside those of the page: they fill its areas."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

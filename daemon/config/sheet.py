@@ -58,8 +58,15 @@ class Planning(Section):
     """"paper" reads a page strictly by the equations of the paper; "repaired" lets the ink decide."""
     network: Literal["linedrawd", "paper"] = "linedrawd"
     """"paper" knows nothing but the paper's straight lines 2 px wide, and those better."""
-    fill: Literal["outline", "skip"] = "outline"
-    """What becomes of filled areas more than twelve line widths across: "skip" leaves them out."""
+    fill: Literal["outline", "hatch", "skip"] = "outline"
+    """What becomes of filled areas more than twelve line widths across: "hatch" draws lines within the outline, "skip"
+    leaves them out."""
+    hatch_spacing_mm: Annotated[float, Field(ge=0.1, le=20)] = 0.5
+    """From line to line of a hatch on paper; about the width of the pen fills an area."""
+    hatch_angle_deg: Annotated[float, Field(ge=-180, le=180)] = 45.0
+    """How its lines rise to the right, as the picture is seen."""
+    hatch_cross: bool = False
+    """Crosses it by a second one at a right angle."""
     explain: bool = False
     """Writes into explain.json why each line is drawn as it is."""
 

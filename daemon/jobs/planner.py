@@ -34,13 +34,15 @@ from daemon.jobs.pictures import strokes_s, write_pictures
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
 from daemon.page.back import given_px
+from daemon.page.fills import Fill
+from daemon.page.hatch import Hatch
 from daemon.page.prepare import fit, put_right
 from daemon.program.file import program_text
 from daemon.report.fidelity import Fidelity, fidelity
 from daemon.report.preview_html import Told
 from daemon.report.report import executed_report, from_json, planned_report, to_json
 from daemon.shapes import Affine, Drawing, Homography, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
-from daemon.toolpath.place import Layout, invert, place
+from daemon.toolpath.place import Layout, invert, place, placement
 from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
 
@@ -72,11 +74,11 @@ def plan_picture(
     stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings, machine)
     with stages("decode"):
         given = _opened(source, settings, name)
-    seen = _known(given) if isinstance(given, VectorPage) else _read(given, folder, settings, stages)
+    sized = isinstance(given, VectorPage) or is_scan(Path(name).name)
+    seen = _known(given) if isinstance(given, VectorPage) else _read(given, folder, settings, stages, sized=sized)
     readable, page = seen.readable, seen.page
     with stages("toolpath"):
-        true_size = isinstance(given, VectorPage) or is_scan(Path(name).name)
-        toolpath = _toolpath(seen, settings, settings.machines[machine], true_size=true_size)
+        toolpath = _toolpath(seen, settings, settings.machines[machine], sized=sized)
     with stages("program"):
         told_to_it = told(toolpath, settings.sheet, settings.machines[machine])
         program = program_of(told_to_it, settings.machines[machine], folder.name)
@@ -162,10 +164,10 @@ def _known(given: VectorPage) -> Understood:
     return Understood(page, page, None, given.graph, drawing, drawing, drawing)
 
 
-def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages) -> Understood:
+def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages, *, sized: bool) -> Understood:
     with stages("page"):
         readable = put_right(given)
-        page = fit(readable, fill=settings.planning.fill)
+        page = fit(readable, fill=_fill(readable, settings, sized=sized))
     with stages("vision"):
         segmentation = segmenter(settings.planning.network, settings.planning.threads).segment(page)
     with stages("graph"):
@@ -173,6 +175,19 @@ def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages) ->
         on_page = _strokes(graph, page, settings)
         drawing, upright = drawing_on_given(on_page, page), drawing_on_readable(on_page, page, readable)
     return Understood(readable, page, segmentation, graph, on_page, upright, drawing)
+
+
+def _fill(readable: PageImage, settings: Settings, *, sized: bool) -> Fill:
+    """What becomes of filled areas; a hatch as it comes to lie on paper."""
+    planning = settings.planning
+    if planning.fill != "hatch":
+        return planning.fill
+    (machine,) = settings.machines.values()
+    height_px, width_px = readable.grey.shape
+    layout = _layout(readable, settings, machine, sized=sized)
+    from_px = placement(width_px, height_px, layout, px_per_mm=readable.px_per_mm)
+    px_per_mm = 1 / float(np.hypot(*from_px[:, 0]))
+    return Hatch(planning.hatch_spacing_mm * px_per_mm, planning.hatch_angle_deg, planning.hatch_cross)
 
 
 def drawing_on_given(drawing: Drawing, page: PageImage) -> Drawing:
@@ -209,19 +224,25 @@ def _graph(page: PageImage, segmentation: Segmentation, folder: Path, settings: 
 def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
     height_px, width_px = page.grey.shape
     as_in_paper = settings.planning.graph == "paper"
-    return strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
+    drawing = strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
+    return replace(drawing, strokes=(*drawing.strokes, *map(Stroke, page.hatching)))
 
 
-def _toolpath(seen: Understood, settings: Settings, machine: Machine, *, true_size: bool) -> Toolpath:
-    """true_size: as large as the picture says, where it does and the settings leave it open."""
-    sheet, page = settings.sheet, seen.page
-    true_size = sheet.size == "true" or (sheet.size == "auto" and true_size and page.px_per_mm is not None)
+def _layout(page: PageImage, settings: Settings, machine: Machine, *, sized: bool) -> Layout:
+    """sized: as large as the picture says, where it does and the settings leave it open."""
+    sheet = settings.sheet
+    true_size = sheet.size == "true" or (sheet.size == "auto" and sized and page.px_per_mm is not None)
     corner_mm = box_origin_mm(sheet, machine)
+    return Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, true_size)
+
+
+def _toolpath(seen: Understood, settings: Settings, machine: Machine, *, sized: bool) -> Toolpath:
+    sheet = settings.sheet
     # Only where lines were seen in pixels do these limit how exactly they are known.
-    error_px = np.inf if seen.segmentation is None else _ERROR_PX * given_px(page) / given_px(seen.readable)
+    error_px = np.inf if seen.segmentation is None else _ERROR_PX * given_px(seen.page) / given_px(seen.readable)
     return plan_toolpath(
         seen.upright,
-        layout=Layout(sheet.box_mm, corner_mm, sheet.margin_mm, sheet.rotate, sheet.mirror, true_size),
+        layout=_layout(seen.page, settings, machine, sized=sized),
         precision=Precision(sheet.error_mm, error_px, machine.resolution_mm, _curve_mm(settings, machine)),
         start_mm=machine.park_mm,
         park_mm=machine.park_mm,

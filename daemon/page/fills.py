@@ -1,4 +1,4 @@
-"""Filled areas: ink so wide that no pen stroke has left it. Their rim is kept, or nothing of them."""
+"""Filled areas: ink so wide that no pen stroke has left it. Their rim is kept, hatched or not, or nothing of them."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import numpy as np
 
 from daemon.bands import bands
 from daemon.ink import Mask, ink_mask
+from daemon.page.hatch import Hatch
 from daemon.page.tones import reduced
 from daemon.shapes import Grey, PageImage, Step
 
-Fill: TypeAlias = Literal["outline", "skip"]
+Fill: TypeAlias = Literal["outline", "skip"] | Hatch
 
 LEAST_WIDTHS = 12.0
 """Ink is no line where it is more than so many line widths across."""
@@ -25,7 +26,7 @@ _SHOWN_PX = 480
 
 
 def hollow(page: PageImage, *, fill: Fill = "outline") -> PageImage:
-    """The page without the inside of its filled areas; with "skip" without their rims, too.
+    """The page without the inside of its filled areas; with "skip" without their rims, too; with a hatch as lines.
 
     page: its line width known. A filled area is more than twelve line widths across and less than ten times as long as
     it is wide: a longer one is the stroke of a wider pen. The rim that is left is one line width wide. A page without
@@ -37,9 +38,11 @@ def hollow(page: PageImage, *, fill: Fill = "outline") -> PageImage:
     if not count:
         return page
     bare = inside if fill != "skip" else _grown(inside, page.line_width_px + _RIM_PX)
-    words = f"{count} filled {'area is' if count == 1 else 'areas are'} {_WORDS[fill]}"
+    done = "hatched" if isinstance(fill, Hatch) else _WORDS[fill]
+    words = f"{count} filled {'area is' if count == 1 else 'areas are'} {done}"
     step = Step(words, reduced(page.grey, _SHOWN_PX))
-    return replace(page, grey=_blank(page.grey, bare), steps=(*page.steps, step))
+    lines = fill.lines(inside, _grown(inside, page.line_width_px / 2)) if isinstance(fill, Hatch) else ()
+    return replace(page, grey=_blank(page.grey, bare), steps=(*page.steps, step), hatching=lines)
 
 
 def _insides(ink: Mask, width_px: float) -> tuple[Mask, int]:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from daemon.page.dark import turn_dark
 from daemon.page.dirt import clean_paper
 from daemon.page.fills import Fill, hollow
+from daemon.page.hatch import Hatch
 from daemon.page.light import even_light, flatten_light, spread_tones
 from daemon.page.line_width import fit_line_width
+from daemon.page.photograph import warned_of_photograph
 from daemon.page.ruling import take_off_ruling
 from daemon.page.sheet import straighten
 from daemon.page.working_range import warned_of_contrast, warned_of_size
@@ -27,16 +31,19 @@ def put_right(page: PageImage) -> PageImage:
 
     `to_given` leads back to the given picture. A clean page comes back as it is, bit by bit.
     """
-    bare = take_off_ruling(even_light(turn_dark(straighten(page))))
+    bare = take_off_ruling(warned_of_photograph(even_light(turn_dark(straighten(page)))))
     return clean_paper(spread_tones(warned_of_contrast(bare)))
 
 
 def fit(page: PageImage, *, fill: Fill = "outline") -> PageImage:
     """The page put right at the scale at which it is read, its line width known, with what there is to warn of.
 
-    fill: what becomes of areas that are wider than any line.
+    fill: what becomes of areas that are wider than any line; a hatch's spacing is in px of the page given here.
     """
-    return hollow(warned_of_size(fit_line_width(page)), fill=fill)
+    fitted = fit_line_width(page)
+    if isinstance(fill, Hatch):
+        fill = replace(fill, spacing_px=fill.spacing_px * fitted.grey.shape[1] / page.grey.shape[1])
+    return hollow(warned_of_size(fitted), fill=fill)
 
 
 def even_out(page: PageImage) -> PageImage:
