@@ -31,6 +31,7 @@ from onnxruntime.quantization.shape_inference import quant_pre_process
 from torch import nn
 
 from training import quickdraw
+from training.bytewise import in_bytes
 from training.canvas import Canvases
 from training.measure import CLASSES
 from training.network import MirrorUNet, Shape, legal_size_px, level_sizes
@@ -183,6 +184,7 @@ def quantise(model: onnx.ModelProto, pages: CalibrationDataReader, path: Path) -
             str(prepared), str(path), pages, quant_format=QuantFormat.QDQ, per_channel=True, reduce_range=True,
             activation_type=QuantType.QUInt8, weight_type=QuantType.QInt8,
         )  # fmt: skip
+    onnx.save(in_bytes(onnx.load(path)), path)
 
 
 def shape_of(config: dict[str, Any]) -> Shape:

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import numpy as np
+import onnx
 import pytest
 import torch
 
@@ -13,9 +14,11 @@ os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 import onnxruntime
 
 from training import export, quickdraw, train
+from training.bytewise import in_bytes
 from training.canvas import Canvases, stack
 from training.feed import feed, place_of
 from training.network import MirrorUNet, Shape
+from training.render import CANVAS_PX
 from training.run import Config
 
 pytestmark = [pytest.mark.training, pytest.mark.filterwarnings("ignore")]
@@ -123,3 +126,18 @@ def test_the_int8_file_agrees_with_the_float_network(data: Path, tmp_path: Path)
     with torch.inference_mode():
         expected = export.load(checkpoint)(torch.from_numpy(batch)).numpy()
     assert (said.argmax(1) == expected.argmax(1)).mean() > 0.995
+
+
+def test_unfolding_bytes_changes_no_answer(data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    torch.manual_seed(5)
+    net = MirrorUNet(Shape(9, 3, 2, 2, (8, 12, 16), True)).eval()
+    canvases = Canvases(quickdraw.read([data], limit=50), None, seed=7)
+    plain, packed = tmp_path / "plain.onnx", tmp_path / "packed.onnx"
+    with monkeypatch.context() as as_it_was:
+        as_it_was.setattr(export, "in_bytes", lambda model: model)
+        export.quantise(export.build(net), export.Pages(canvases, 2, 0.0), plain)
+    onnx.save(in_bytes(onnx.load(plain)), packed)
+    ink = np.random.default_rng(5).random((2, 1, CANVAS_PX, CANVAS_PX), np.float32)
+    answers = [onnxruntime.InferenceSession(str(path)).run(None, {"ink": ink})[0] for path in (plain, packed)]
+    assert (answers[0] == answers[1]).all()
+    assert np.ptp(answers[0]) > 0
