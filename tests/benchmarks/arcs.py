@@ -2,12 +2,14 @@
 
     python -m tests.benchmarks arcs
 
-Our own drawings and the set of curves, in a box of 64 mm, each planned both ways. Hausdorff: between the arcs and the
-lines as they were traced.
+Our own drawings and the set of curves, in a box of 64 mm, each planned both ways; the set of curves once more without
+the four that are mostly straight lines. Hausdorff: between the arcs and the lines as they were traced. CPU: of ordering
+and fitting.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +28,8 @@ from tests.benchmarks.fidelity.ours import understood
 from tests.daemon.toolpath.strokes import hausdorff_mm
 from tests.drawings.make import SHEETS
 
+STRAIGHT = {"house", "star", "gear 12", "gear 8"}
+"""Of the set of curves: these would take as many moves if there were no arcs."""
 DRAWINGS = Path(__file__).parents[1] / "drawings"
 ERROR_MM, RESOLUTION_MM = 0.05, 0.02
 PEN, DRAW_MM_S = ZPen(), 40.0
@@ -36,25 +40,30 @@ BRISK = {110: 6000.0, 111: 6000.0, 112: 3000.0, 120: 500.0, 121: 500.0, 122: 500
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """Moves with the pen down, lines of the program, seconds on a stock and on a brisk plotter, as pieces and arcs."""
+    """As pieces and as arcs: moves, pen down; lines of the program; seconds on a stock and a brisk plotter; of CPU."""
 
     moves: tuple[float, float]
     lines: tuple[float, float]
     stock_s: tuple[float, float]
     brisk_s: tuple[float, float]
+    cpu_s: tuple[float, float]
     hausdorff_mm: float
 
 
 def show() -> None:
     """Print a line a drawing and one for each set."""
     print(f"pieces and arcs, both within {ERROR_MM} mm; s at {DRAW_MM_S:g} mm/s, stock (10 mm/s2), brisk (500 mm/s2)")
-    print(f"{'':22}{'moves':>11}{'':6}{'lines':>11}{'':6}{'stock s':>15}{'brisk s':>15}{'Hausdorff mm':>14}")
+    print(
+        f"{'':22}{'moves':>11}{'':6}{'lines':>11}{'':6}{'stock s':>15}{'brisk s':>15}{'CPU s':>15}{'Hausdorff mm':>14}"
+    )
     for name, drawings in (("curves", _curves()), ("drawings", _drawings())):
-        rows = []
+        rows = {}
         for title, grey in drawings:
-            rows.append(figures(grey))
-            _print(title, rows[-1])
-        _print(f"{name}, all", _sum(rows))
+            rows[title] = figures(grey)
+            _print(title, rows[title])
+        _print(f"{name}, all", _sum(list(rows.values())))
+        if rows.keys() & STRAIGHT:
+            _print(f"{name}, curved ones", _sum([rows[title] for title in rows if title not in STRAIGHT]))
 
 
 def figures(grey: Grey) -> Figures:
@@ -62,8 +71,11 @@ def figures(grey: Grey) -> Figures:
     height_px, width_px = grey.shape
     drawing = Drawing(tuple(map(Stroke, understood(grey).strokes)), width_px, height_px)
     error = Precision(ERROR_MM, np.inf, RESOLUTION_MM)
+    begun_s = time.process_time()
     pieces = plan_toolpath(drawing, precision=error, rejoin=False)
+    between_s = time.process_time()
     arcs = plan_toolpath(drawing, precision=Precision(ERROR_MM, np.inf, RESOLUTION_MM, ERROR_MM), rejoin=False)
+    ended_s = time.process_time()
     programs = [
         [line.text for line in write_gcode(each, pen=PEN, draw_mm_s=DRAW_MM_S).lines] for each in (pieces, arcs)
     ]
@@ -72,6 +84,7 @@ def figures(grey: Grey) -> Figures:
         (len(programs[0]), len(programs[1])),
         (line_times_s(programs[0], STOCK)[-1], line_times_s(programs[1], STOCK)[-1]),
         (line_times_s(programs[0], BRISK)[-1], line_times_s(programs[1], BRISK)[-1]),
+        (between_s - begun_s, ended_s - between_s),
         _off_mm(drawing, arcs),
     )
 
@@ -112,6 +125,7 @@ def _sum(rows: list[Figures]) -> Figures:
         both(row.lines for row in rows),
         both(row.stock_s for row in rows),
         both(row.brisk_s for row in rows),
+        both(row.cpu_s for row in rows),
         max(row.hausdorff_mm for row in rows),
     )
 
@@ -119,4 +133,5 @@ def _sum(rows: list[Figures]) -> Figures:
 def _print(title: str, row: Figures) -> None:
     counts = "".join(f"{a:6.0f}{b:5.0f}{a / max(b, 1):5.1f}x" for a, b in (row.moves, row.lines))
     times = "".join(f"{a:8.1f}{b:7.1f}" for a, b in (row.stock_s, row.brisk_s))
-    print(f"{title:22}{counts}{times}{row.hausdorff_mm:14.3f}", flush=True)
+    cpu = f"{row.cpu_s[0]:8.2f}{row.cpu_s[1]:7.2f}"
+    print(f"{title:22}{counts}{times}{cpu}{row.hausdorff_mm:14.3f}", flush=True)
