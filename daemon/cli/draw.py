@@ -11,8 +11,19 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from daemon.cli.options import add_machine, add_places, add_record, add_which, record_of, settings_of, verbose
+from daemon.cli.options import (
+    add_machine,
+    add_page,
+    add_places,
+    add_record,
+    add_which,
+    page_of,
+    record_of,
+    settings_of,
+    verbose,
+)
 from daemon.errors import LinedrawError, MachineFault
+from daemon.jobs.arrival import ARRIVAL_NAME, Arrival
 from daemon.jobs.states import State
 from daemon.parts import Parts, parts_of
 from daemon.status import Status
@@ -35,6 +46,7 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("picture", metavar="PICTURE", type=Path)
+    add_page(parser)
     add_which(parser)
     add_machine(parser)
     add_places(parser)
@@ -50,7 +62,9 @@ def run(args: argparse.Namespace) -> int:
     if not args.picture.is_file():
         raise LinedrawError(f"there is no file {args.picture}: give the path of a picture")
     with parts_of(settings, verbose=verbose(args), record=record_of(args)) as parts:
-        job_id = parts.desk.copy(args.picture.absolute(), args.picture.name)
+        arrival = Arrival(args.picture.name, "", 1, page=page_of(args, args.picture))
+        folder = parts.desk.folders.copy(args.picture.absolute(), {ARRIVAL_NAME: arrival.encoded()})
+        job_id = parts.desk.add(folder, arrival.called)
         _draw_watched(parts, job_id)
         job = parts.desk.find(job_id)
     if job.state is State.DONE:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from daemon.config import Options, Settings, load_settings
+from daemon.intake.pages import count_pages
 from daemon.places import usual_file
 
 _PATHS = ("config", "state_dir", "inbox", "log_dir")
@@ -44,6 +46,21 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
 def add_which(parser: argparse.ArgumentParser, words: str = "which machine, where several are set") -> None:
     """The name of a machine's section."""
     parser.add_argument("--machine", metavar="NAME", default=argparse.SUPPRESS, help=words)
+
+
+def add_page(parser: argparse.ArgumentParser) -> None:
+    """One of the pages of a document."""
+    parser.add_argument("--page", metavar="N", type=int, help="of a PDF or TIFF of several pages, from 1 on")
+
+
+def page_of(args: argparse.Namespace, picture: Path) -> int:
+    """The page that is wanted. Where nobody has said one says on stderr that there are others."""
+    if args.page is not None:
+        return int(args.page)
+    pages = count_pages(picture)
+    if pages > 1:
+        print(f"{picture} has {pages} pages, the first is taken: --page N takes another", file=sys.stderr)
+    return 1
 
 
 def which_of(args: argparse.Namespace) -> str:

@@ -9,13 +9,15 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from daemon.cli.options import add_places, add_which, settings_of
+from daemon.cli.options import add_page, add_places, add_which, page_of, settings_of
 from daemon.errors import LinedrawError
+from daemon.jobs.arrival import keep_page
 from daemon.jobs.folder import make_folder, warnings_of
 from daemon.jobs.pool import Pool
 
 EXAMPLES = """examples:
   linedrawd plan house.png -o plans          # plans/house/{drawing.svg,program.gcode,preview.png,...}
+  linedrawd plan plan.pdf --page 2 -o plans  # plans/plan-page-2
   linedrawd plan scans/*.png -o plans        # one folder each; the exit code is 1 if some of them failed
 """
 
@@ -34,6 +36,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--explain", action="store_true", help="write explain.json, too: why each edge was kept or refused"
     )
+    add_page(parser)
     add_which(parser)
     add_places(parser)
     parser.set_defaults(run=run)
@@ -48,10 +51,11 @@ def run(args: argparse.Namespace) -> int:
         settings = settings.model_copy(update={"planning": planning})
     failed = 0
     with closing(Pool(settings)) as pool:
-        for picture, folder in _folders(args.pictures, args.output.absolute()):
+        for picture, folder in _folders(args.pictures, args.output.absolute(), args.page):
             try:
                 _check_exists(picture)
                 make_folder(folder)
+                keep_page(folder, page_of(args, picture))
                 pool.plan(picture.absolute(), folder, machine, name=str(picture), progress=lambda _: None)
             except LinedrawError as error:
                 failed += 1
@@ -69,8 +73,8 @@ def _check_exists(picture: Path) -> None:
         raise LinedrawError("there is no such file: give the path of a picture")
 
 
-def _folders(pictures: Iterable[Path], output: Path) -> Iterable[tuple[Path, Path]]:
-    """Each picture and its folder: its stem, numbered where two pictures of this call share it."""
+def _folders(pictures: Iterable[Path], output: Path, page: int | None) -> Iterable[tuple[Path, Path]]:
+    """Each picture and its folder: its stem, numbered where two pictures of this call share it, and its page."""
     used: set[str] = set()
     for picture in pictures:
         name, number = picture.stem, 1
@@ -78,4 +82,4 @@ def _folders(pictures: Iterable[Path], output: Path) -> Iterable[tuple[Path, Pat
             number += 1
             name = f"{picture.stem}-{number}"
         used.add(name)
-        yield picture, output / name
+        yield picture, output / (name if page is None else f"{name}-page-{page}")

@@ -8,8 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from daemon.cli.options import add_places, add_which, settings_of
+from daemon.cli.options import add_page, add_places, add_which, page_of, settings_of
 from daemon.errors import DiskTrouble, LinedrawError
+from daemon.jobs.arrival import keep_page
 from daemon.jobs.pool import Pool
 
 EXAMPLES = """examples:
@@ -31,6 +32,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "-o", "--output", metavar="FILE", type=Path, help="PICTURE-preview.html in this folder where it is left out"
     )
+    add_page(parser)
     add_which(parser)
     add_places(parser)
     parser.set_defaults(run=run)
@@ -45,6 +47,7 @@ def run(args: argparse.Namespace) -> int:
         raise LinedrawError(f"there is no file {picture}: give the path of a picture")
     file: Path = args.output or Path(f"{picture.stem}-preview.html")
     with closing(Pool(settings)) as pool, TemporaryDirectory(prefix="linedrawd-") as folder:
+        keep_page(Path(folder), page_of(args, picture))
         pool.plan(picture.absolute(), Path(folder), machine, name=str(picture), progress=lambda _: None)
         _write(file, (Path(folder) / "preview.html").read_bytes())
     print(f"{picture} -> {file}")

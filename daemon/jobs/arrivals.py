@@ -1,4 +1,4 @@
-"""Arrivals: a picture in the inbox becomes a job, or as many as its side file asks for."""
+"""Arrivals: a picture in the inbox becomes a job, or as many as it has pages and its side file asks for copies."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 from daemon.config import Settings
 from daemon.errors import DiskTrouble, SettingsError
 from daemon.intake.inbox import readable
+from daemon.intake.pages import count_pages
 from daemon.intake.side import Wishes, parse, read_bytes
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
 from daemon.jobs.desk import Desk
@@ -26,8 +27,15 @@ _NOT_DRAWN = (State.FAILED, State.CANCELLED, State.INTERRUPTED)
 class Arrivals:
     """Takes pictures in. Every cut, at any moment, leaves each picture in the inbox or in a job that is found again."""
 
-    def __init__(self, desk: Desk, settings: Settings, *, free: Callable[[Path], int] = free_bytes) -> None:
-        self._desk, self.settings, self._free = desk, settings, free
+    def __init__(
+        self,
+        desk: Desk,
+        settings: Settings,
+        *,
+        free: Callable[[Path], int] = free_bytes,
+        pages: Callable[[Path], int] = count_pages,
+    ) -> None:
+        self._desk, self.settings, self._free, self._pages = desk, settings, free, pages
         self._jobs_of: dict[int, list[str]] | None = None
         self._hashes: dict[str, str] = {}
 
@@ -41,10 +49,10 @@ class Arrivals:
         name = readable(picture.name)
         said, wishes = self._wishes(beside, inbox)
         twin = self._twin(picture, said) if self.settings.intake.duplicates == "skip" else ""
-        copies = 1 if twin else wishes.copies
+        copies, pages = (1, 1) if twin else (wishes.copies, self._pages(picture))
         side, machine = beside.name if beside else "", wishes.machine or inbox
         # The twin too, before the picture is taken: whoever finds it after a cut must not draw it again.
-        arrival = Arrival(name, side, copies, inbox=inbox, machine=machine, twin=twin)
+        arrival = Arrival(name, side, copies, inbox=inbox, machine=machine, twin=twin, pages=pages)
         files = {ARRIVAL_NAME: arrival.encoded()}
         if beside:
             files[SIDE_NAME] = said
@@ -65,7 +73,7 @@ class Arrivals:
             arrival = arrival_in(folder) if read_record(folder) is None else None
             if arrival is not None and self._desk.journal.job(job) is None:
                 inbox = inboxes.get(arrival.inbox, inboxes[""])
-                made = [job, *(_copies_of(folders.root, job) if arrival.copies > 1 else [])]
+                made = [job, *(_copies_of(folders.root, job) if len(arrival.jobs()) > 1 else [])]
                 recorded = {each for each in made if self._desk.journal.job(each)}
                 self._add(made, arrival, inbox / arrival.side if arrival.side else None, recorded=recorded)
 
@@ -100,26 +108,27 @@ class Arrivals:
     def _add(self, made: list[str], arrival: Arrival, beside: Path | None, *, recorded: Iterable[str] = ()) -> None:
         """The copies' folders first: a job that is recorded has them all. Then the side file, then the record.
 
-        made: the job whose folder holds the picture, and those of its copies that are there already.
+        made: the job whose folder holds the picture, and those of its copies and pages that are there already, in the
+        order in which they were made: page by page, then the next copy.
         """
         job, folders = made[0], self._desk.folders
         folder = folders.path(job)
         source = source_of(folder)
         assert source is not None
-        while len(made) < arrival.copies:
-            copy = Arrival(arrival.name, "", 1, copy_of=job, machine=arrival.machine)
-            files = {ARRIVAL_NAME: copy.encoded()}
+        jobs = arrival.jobs()
+        for one in jobs[len(made) :]:
+            files = {ARRIVAL_NAME: one.copy(job).encoded()}
             if (folder / SIDE_NAME).exists():
                 files[SIDE_NAME] = (folder / SIDE_NAME).read_bytes()
             made.append(folders.copy(source, files, name=arrival.name))
         if beside is not None:
             _remove_taken(beside, folder / SIDE_NAME)
         # Not before all of them have their folders: what is recorded is not looked at again after a cut.
-        for each in made:
+        for each, one in zip(made, jobs, strict=True):
             if each not in recorded and arrival.twin:
-                self._desk.add_dropped(each, arrival.name, _TWIN.format(twin=arrival.twin))
+                self._desk.add_dropped(each, one.called, _TWIN.format(twin=arrival.twin))
             elif each not in recorded:
-                self._desk.add(each, arrival.name, bound_to=arrival.machine)
+                self._desk.add(each, one.called, bound_to=arrival.machine)
         self._remember(made)
 
     def _twin(self, picture: Path, said: bytes) -> str:

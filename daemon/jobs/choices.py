@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from daemon.errors import LinedrawError
+from daemon.jobs.arrival import ARRIVAL_NAME, arrival_in
 from daemon.jobs.desk import Desk
 from daemon.jobs.folder import source_of, write_durably
 from daemon.jobs.journal import UNTOLD, Job
@@ -55,8 +56,11 @@ class Choices:
         source = source_of(folder)
         if source is None:
             raise LinedrawError(f"the picture of job {job.id} is no longer kept: drop it into the inbox again")
-        side = folder / SIDE_NAME
-        new = self._desk.folders.copy(source, {SIDE_NAME: side.read_bytes()} if side.exists() else None, name=job.name)
+        arrival, side = arrival_in(folder), folder / SIDE_NAME
+        files = {ARRIVAL_NAME: arrival.copy(job.id).encoded()} if arrival else {}
+        if side.exists():
+            files[SIDE_NAME] = side.read_bytes()
+        new = self._desk.folders.copy(source, files, name=arrival.name if arrival else job.name)
         return f"job {self._desk.add(new, job.name, bound_to=job.bound_to)} draws {job.name} once more"
 
     def _check_machine(self, job: Job) -> None:

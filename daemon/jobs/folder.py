@@ -91,10 +91,12 @@ class JobFolders:
     def copy(self, picture: Path, beside: Mapping[str, bytes] | None = None, *, name: str = "") -> str:
         """As `take`, but the picture stays where it is. Raises DiskTrouble and FileNotFoundError.
 
-        name: what the picture is called, if not like its file.
+        The picture of another job is never written into: both then have the one file. name: what the picture is called,
+        if not like its file.
         """
         with self._new_folder(Path(name) if name else picture, beside or {}) as folder:
-            _copy_durably(picture, folder / _source_name(picture))
+            put = _link_or_copy if picture.parent.parent == self.root else _copy_durably
+            put(picture, folder / _source_name(picture))
         return folder.name
 
     def finish_claims(self, inbox: Path) -> None:
@@ -153,6 +155,14 @@ def _take_from_elsewhere(picture: Path, folder: Path) -> None:
         hidden.rename(picture)
         raise
     hidden.unlink()
+
+
+def _link_or_copy(picture: Path, copy: Path) -> None:
+    """Some file systems know no links, and of a file of somebody else's none may be made."""
+    try:
+        copy.hardlink_to(picture)
+    except OSError:
+        _copy_durably(picture, copy)
 
 
 def _copy_durably(picture: Path, copy: Path) -> None:

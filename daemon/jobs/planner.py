@@ -27,6 +27,7 @@ from daemon.homography import through
 from daemon.intake.picture import open_picture
 from daemon.intake.scanner import is_scan
 from daemon.intake.vector.sheet import VectorPage
+from daemon.jobs.arrival import page_in
 from daemon.jobs.correction import told
 from daemon.jobs.devices import program_of, times_of
 from daemon.jobs.folder import source_of, write_all_durably, write_durably
@@ -73,7 +74,7 @@ def plan_picture(
     """
     stages, name, settings = Stages(progress), name or str(source), settings_for(folder, settings, machine)
     with stages("decode"):
-        given = _opened(source, settings, name)
+        given = _opened(source, folder, settings, name)
     sized = isinstance(given, VectorPage) or is_scan(Path(name).name)
     seen = _known(given) if isinstance(given, VectorPage) else _read(given, folder, settings, stages, sized=sized)
     readable, page = seen.readable, seen.page
@@ -110,7 +111,7 @@ def measure_ink(folder: Path, settings: Settings, machine: str) -> None:
     source = source_of(folder)
     if source is None:
         raise LinedrawError(f"the picture has gone from {folder}: nothing to compare the ink with")
-    given = _opened(source, settings, str(source))
+    given = _opened(source, folder, settings, str(source))
     readable = given.page if isinstance(given, VectorPage) else put_right(given)
     drawn = [np.array(stroke, float).reshape(-1, 2) for stroke in ink["strokes"]]
     found = _fidelity_mm(readable, drawn, np.array(planned.from_px), planned.line_width_px)
@@ -154,8 +155,8 @@ def segmenter(network: str, threads: int) -> Segmenter:
     return Segmenter(network, threads=threads)
 
 
-def _opened(source: Path, settings: Settings, name: str) -> PageImage | VectorPage:
-    return open_picture(source, max_megapixels=settings.intake.max_megapixels, name=name)
+def _opened(source: Path, folder: Path, settings: Settings, name: str) -> PageImage | VectorPage:
+    return open_picture(source, max_megapixels=settings.intake.max_megapixels, name=name, page=page_in(folder))
 
 
 def _known(given: VectorPage) -> Understood:

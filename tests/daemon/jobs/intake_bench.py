@@ -23,7 +23,10 @@ from daemon.jobs.station import Station
 class Intake:
     """An inbox, a state folder, and what takes pictures from the one to the other."""
 
-    def __init__(self, root: Path, intake: str = "", *, free: Callable[[Path], int] = lambda folder: 10**12) -> None:
+    def __init__(
+        self, root: Path, intake: str = "", *, free: Callable[[Path], int] = lambda folder: 10**12, pages: int = 1
+    ) -> None:
+        """pages: that each picture has."""
         self.inbox, file = root / "inbox", root / "linedrawd.toml"
         self.inbox.mkdir(exist_ok=True)
         file.write_text(f"[intake]\n{intake}\n")
@@ -40,7 +43,7 @@ class Intake:
         )
         self.station = Station(self.desk, "plotter", show=_silent, asks_for_sheets=False)
         self.allotment = Allotment(self.desk)
-        self.arrivals = Arrivals(self.desk, self.settings, free=free)
+        self.arrivals = Arrivals(self.desk, self.settings, free=free, pages=lambda picture: pages)
 
     def take(self, name: str = "house.png", side: str | None = "house.toml") -> None:
         self.arrivals.take(self.inbox / name, self.inbox / side if side else None)
@@ -75,7 +78,7 @@ class Cuts:
             return rename(path, target)
 
         monkeypatch.setattr(Path, "rename", self._counted(across if other_disk else rename))
-        for name in ("unlink", "mkdir"):
+        for name in ("unlink", "mkdir", "hardlink_to"):
             monkeypatch.setattr(Path, name, self._counted(getattr(Path, name)))
         monkeypatch.setattr(os, "fsync", self._counted(lambda descriptor: None))
         for record in ("add", "adopt", "step"):

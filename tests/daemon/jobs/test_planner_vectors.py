@@ -13,7 +13,9 @@ import pytest
 from daemon.config import Options, Settings, load_settings
 from daemon.errors import NothingToDraw, OutOfReach
 from daemon.jobs import planner
+from daemon.jobs.arrival import ARRIVAL_NAME, Arrival
 from daemon.jobs.planner import measure_ink, plan_picture
+from tests.daemon.intake.vector.pdfs import pdf
 
 SHAPES = Path(__file__).parents[2] / "drawings" / "shapes.svg"
 
@@ -99,3 +101,19 @@ def test_what_is_too_large_for_the_machine_or_empty_fails_with_a_sentence(settin
     with pytest.raises(NothingToDraw, match="holds no line to draw"):
         plan_picture(tmp_path / "source.svg", tmp_path, settings, "plotter")
     assert not (tmp_path / "program.gcode").exists()
+
+
+def test_the_page_of_the_job_is_planned_and_measured(settings: Settings, tmp_path: Path) -> None:
+    book = pdf(["10 20 m 60 20 l S", "10 20 m 60 120 l S"])
+    (tmp_path / "source.pdf").write_bytes(book)
+    (tmp_path / ARRIVAL_NAME).write_bytes(Arrival("a.pdf", "", 1, pages=2, page=2).encoded())
+    plan_picture(tmp_path / "source.pdf", tmp_path, settings, "plotter", name="a.pdf page 2")
+    report, drawn = read(tmp_path / "report.json"), read(tmp_path / "strokes.json")
+    ends = np.array(sorted(drawn["strokes"][0])) / drawn["px_per_mm"] * 72 / 25.4
+    assert ends.round().tolist() == [[10, 124], [60, 24]]
+    assert report["fidelity"]["f1"] > 0.99
+    from_px = np.array(report["from_px"])
+    strokes = [planner.place(np.array(stroke), from_px).tolist() for stroke in drawn["strokes"]]
+    (tmp_path / "ink.json").write_text(json.dumps({"strokes": strokes}))
+    measure_ink(tmp_path, settings, "plotter")
+    assert read(tmp_path / "report.json")["fidelity"]["f1"] > 0.99

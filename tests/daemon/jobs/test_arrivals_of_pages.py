@@ -1,0 +1,123 @@
+"""A document becomes a job for each of its pages, each once in each copy, wherever the power is cut."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in, keep_page, page_in
+from daemon.jobs.choices import Choices
+from daemon.jobs.folder import source_of
+from daemon.jobs.wishes import SIDE_NAME
+from tests.daemon.jobs.intake_bench import Cuts, Intake
+from tests.daemon.jobs.test_folder import drop
+
+PAGES, WISHES = 3, b"copies = 2\n"
+NAMES = [f"plan.pdf page {page}" for page in (1, 2, 3)]
+
+
+def book_in(root: Path, said: bytes = b"") -> Intake:
+    intake = Intake(root, pages=PAGES)
+    drop(intake.inbox, "plan.pdf")
+    if said:
+        drop(intake.inbox, "plan.toml", said)
+    return intake
+
+
+def take(intake: Intake) -> None:
+    intake.take("plan.pdf", "plan.toml" if (intake.inbox / "plan.toml").exists() else None)
+
+
+def told(intake: Intake) -> list[tuple[str, int]]:
+    return [(job.name, page_in(intake.folders.path(job.id))) for job in intake.journal.jobs()]
+
+
+def test_each_page_is_a_job_with_its_name_and_the_one_file_is_not_kept_thrice(tmp_path: Path) -> None:
+    intake = book_in(tmp_path)
+    take(intake)
+    assert told(intake) == list(zip(NAMES, (1, 2, 3), strict=True))
+    sources = [source_of(intake.folders.path(job.id)) for job in intake.journal.jobs()]
+    assert [source.name for source in sources if source] == ["source.pdf"] * 3
+    assert len({source.stat().st_ino for source in sources if source}) == 1
+    assert list(intake.inbox.iterdir()) == []
+
+
+def test_each_copy_is_drawn_page_by_page_with_its_wishes(tmp_path: Path) -> None:
+    intake = book_in(tmp_path, WISHES)
+    take(intake)
+    assert told(intake) == list(zip(NAMES * 2, (1, 2, 3) * 2, strict=True))
+    assert all((intake.folders.path(job.id) / SIDE_NAME).read_bytes() == WISHES for job in intake.journal.jobs())
+
+
+@pytest.mark.parametrize("said", [b"", WISHES], ids=["once", "two copies"])
+def test_no_cut_loses_or_doubles_a_page(tmp_path: Path, cuts: Cuts, said: bytes) -> None:
+    copies = 2 if said else 1
+
+    def after_the_cut(root: Path) -> None:
+        intake = Intake(root, pages=PAGES)
+        intake.recover()
+        if (intake.inbox / "plan.pdf").exists():
+            take(intake)
+        assert sorted(told(intake)) == sorted(zip(NAMES * copies, (1, 2, 3) * copies, strict=True))
+        for job in intake.journal.jobs():
+            source = source_of(intake.folders.path(job.id))
+            assert source is not None
+            assert source.read_bytes() == b"picture"
+        assert list(intake.inbox.iterdir()) == []
+        assert len(list(intake.folders.root.iterdir())) == PAGES * copies
+        intake.journal.close()
+
+    cuts.everywhere(tmp_path, lambda root: book_in(root, said), take, after_the_cut, changes=range(24, 500))
+
+
+def test_where_no_links_can_be_made_the_file_is_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(path: Path, target: Path) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(Path, "hardlink_to", refused)
+    intake = book_in(tmp_path)
+    take(intake)
+    sources = [source_of(intake.folders.path(job.id)) for job in intake.journal.jobs()]
+    assert [source.read_bytes() for source in sources if source] == [b"picture"] * 3
+
+
+def test_again_draws_the_same_page_alone_also_when_the_power_is_cut_behind_it(tmp_path: Path) -> None:
+    intake = book_in(tmp_path)
+    take(intake)
+    second = intake.journal.jobs()[1].id
+    Choices(intake.desk, placed=lambda machine: True).again(second)
+    assert told(intake)[PAGES:] == [(NAMES[1], 2)]
+    arrival = arrival_in(intake.folders.path(second))
+    assert arrival is not None
+    source = source_of(intake.folders.path(second))
+    assert source is not None
+    intake.folders.copy(source, {ARRIVAL_NAME: arrival.copy(second).encoded()}, name="plan.pdf")
+    intake.journal.close()
+    intake = Intake(tmp_path, pages=PAGES)
+    intake.recover()
+    assert told(intake)[PAGES:] == [(NAMES[1], 2)] * 2
+
+
+def test_a_document_that_comes_again_is_dropped_as_one(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, "duplicates = 'skip'", pages=PAGES)
+    for _ in range(2):
+        drop(intake.inbox, "plan.pdf")
+        take(intake)
+    assert intake.states() == ["queued"] * PAGES + ["cancelled"]
+
+
+def test_a_folder_that_is_no_jobs_keeps_the_page_that_was_asked_for_last(tmp_path: Path) -> None:
+    keep_page(tmp_path, 1)
+    assert list(tmp_path.iterdir()) == []
+    for page in (2, 1):
+        keep_page(tmp_path, page)
+        assert page_in(tmp_path) == page
+
+
+def test_one_page_that_a_person_asked_for_stays_that_page(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, pages=PAGES)
+    drop(tmp_path, "plan.pdf")
+    intake.folders.copy(tmp_path / "plan.pdf", {ARRIVAL_NAME: Arrival("plan.pdf", "", 1, page=3).encoded()})
+    intake.recover()
+    assert told(intake) == [(NAMES[2], 3)]
