@@ -29,7 +29,7 @@ def count_pages(path: Path) -> int:
         return 1
     try:
         said = subprocess.run(
-            [sys.executable, "-m", "daemon.intake.pages", str(path)],
+            [sys.executable, "-m", "daemon.intake.pages", str(path.absolute())],
             cwd=_ROOT, stdin=subprocess.DEVNULL, capture_output=True, timeout=_WITHIN_S, check=True,
         )  # fmt: skip
         return int(said.stdout)

@@ -20,6 +20,8 @@ MOST_BYTES = 200_000_000
 HEAD = re.compile(rb".{0,1019}%PDF-", re.DOTALL)
 _MM_PER_PT = 25.4 / 72
 _DPI = 300.0
+_MOST_MEGAPIXELS = 35.0
+"""A page of A2 at 300 dpi: the lines of a larger one are seen with fewer."""
 _LINKS = ("LINK", "POPUP")
 _UNIT = re.compile(rb"/Type\s*/Page\s*/UserUnit\s+([0-9.]+)")
 _HIDDEN_LAYERS = re.compile(rb"/OFF\s*\[\s*\d|/BaseState\s*/OFF")
@@ -30,8 +32,8 @@ def read_pdf(data: bytes, *, page: int, max_megapixels: float) -> Vectors | Rend
 
     Lines where it holds paths alone: outlines of what is filled, cut off at the box round its clip, without what is
     white. With text, pictures, shadings or notes on it, or where the file hides layers, all of it is a picture of
-    300 dpi, fewer where that were more than max_megapixels. Raises ValueError with what is wrong and its cure,
-    ModuleNotFoundError without pypdfium2.
+    300 dpi, fewer where the page is larger than A2, or that were more than max_megapixels. Raises ValueError with what
+    is wrong and its cure, ModuleNotFoundError without pypdfium2.
     """
     with _opened(data) as document:
         index = checked_page(page, len(document)) - 1
@@ -113,7 +115,7 @@ def _has_notes(sheet: Any) -> bool:
 
 def _rendered(sheet: Any, unit_mm: float, max_megapixels: float) -> Rendered:
     width_pt, height_pt = sheet.get_size()
-    most_px_per_pt = math.sqrt(0.98 * max_megapixels * 1e6 / (width_pt * height_pt))
+    most_px_per_pt = math.sqrt(0.98e6 * min(max_megapixels, _MOST_MEGAPIXELS) / (width_pt * height_pt))
     px_per_pt = min(_DPI / 25.4 * unit_mm, most_px_per_pt)
     picture = sheet.render(scale=px_per_pt, grayscale=True, may_draw_forms=False)
     grey = np.array(picture.to_numpy(), np.uint8).reshape(picture.height, picture.width)

@@ -97,6 +97,12 @@ def test_pages_are_counted_and_what_is_refused_is_one(tmp_path: Path, data: byte
     assert counted(tmp_path, data) == expected
 
 
+def test_a_path_may_begin_where_the_command_was_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a.pdf").write_bytes(pdf(["", ""]))
+    monkeypatch.chdir(tmp_path)
+    assert count_pages(Path("a.pdf")) == 2
+
+
 def test_what_can_have_no_pages_is_not_opened_by_anybody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pages.subprocess, "run", None)
     assert counted(tmp_path, files.encoded(".png", files.CORNER)) == 1
