@@ -10,7 +10,7 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 
@@ -49,15 +49,18 @@ def show() -> None:
 
 
 @contextmanager
-def daemon(folder: Path, *, more: str = "") -> Iterator[subprocess.Popen[bytes]]:
-    """`linedrawd` on the plotter at `grbl` in the folder, until SIGTERM. more: settings of the plotter."""
+def daemon(folder: Path, *, more: str = "", under: Sequence[str] = ()) -> Iterator[subprocess.Popen[bytes]]:
+    """`linedrawd` on the plotter at `grbl` in the folder, until SIGTERM.
+
+    more: settings of the plotter. under: a command that becomes the one behind it.
+    """
     config, state = folder / "linedrawd.toml", folder / "state"
     (state / "inbox").mkdir(parents=True)
     config.write_text(_TOML.format(port=folder / "grbl") + more)
     linedrawd = Path(sys.executable).with_name("linedrawd")
     with (folder / "said.txt").open("wb") as said:
         process = subprocess.Popen(
-            [linedrawd, "--config", config, "--state-dir", state], stdout=said, stderr=subprocess.STDOUT
+            [*under, linedrawd, "--config", config, "--state-dir", state], stdout=said, stderr=subprocess.STDOUT
         )
     try:
         await_("the daemon runs", (state / "run" / "status.json").exists, within_s=_READY_WITHIN_S)

@@ -1,4 +1,4 @@
-"""A simulated plotter on a pseudo terminal that notes when lines come and how full its planner is."""
+"""A simulated plotter on a pseudo terminal that notes when lines come, and when its planner runs dry."""
 
 from __future__ import annotations
 
@@ -38,6 +38,11 @@ class Wire:
     @property
     def now(self) -> float:
         return self._simulator.now
+
+    @property
+    def dry(self) -> int:
+        """How often the pen has stood on the sheet for want of a line."""
+        return self._simulator.stood_on_sheet
 
     @property
     def ink(self) -> Sequence[Polyline]:

@@ -73,6 +73,8 @@ class GrblSimulator:
         self._timed: list[tuple[float, Timed]] = []
         self._sent = self._oks = 0
         self.unplugged = False
+        self.stood_on_sheet = 0
+        """How often a pen that Z moves has come to rest on the sheet: its planner ran dry."""
 
     @property
     def now(self) -> float:
@@ -192,6 +194,7 @@ class GrblSimulator:
             if was_moving and not chip.stepper.moving:
                 chip.signals |= Signal.STOPPED
                 chip.drivers_off()
+                self.stood_on_sheet += chip.state is State.RUN and self._pen_touches()
             if chip.inputs.depend_on_place:
                 happened |= chip.feel()
             happened |= chip.inbound.absorb(now)
@@ -202,6 +205,10 @@ class GrblSimulator:
         while self._main is not None and self._due is not None and max(self._due, chip.stall_until_s) <= now:
             self._due = next(self._main)
             self._polling = self._due is None
+
+    def _pen_touches(self) -> bool:
+        at_mm = self.position_mm
+        return self._chip.ink.rule.part(at_mm, at_mm, 0.0) is not None
 
     def _power_on(self, deaf_s: float = 0.0) -> None:
         chip = self._chip

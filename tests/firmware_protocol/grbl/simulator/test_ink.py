@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from firmware_protocol.grbl.simulator.faults import BrownOut, DropByte, FlipByte, Hang, HardLimit, LoseOk, Unplug
@@ -54,6 +56,16 @@ def test_ink_grows_while_the_pen_moves() -> None:
     drawn = conversation.sim.ink[0][-1][0]
     assert drawn == pytest.approx(conversation.sim.position_mm[0])
     assert 14 < drawn < 15.2
+
+
+@pytest.mark.parametrize(("rests", "times"), [((), 0), ((1, 8), 0), ((7,), 1), ((3, 4, 6), 3)])
+def test_a_planner_that_runs_dry_leaves_the_pen_standing_on_the_sheet(rests: tuple[int, ...], times: int) -> None:
+    """rests: numbers of lines that come only when the machine has come to rest."""
+    conversation = talk()
+    for first, after in pairwise((0, *rests, len(SQUARE))):
+        conversation.stream(SQUARE[first:after])
+        conversation.settle()
+    assert conversation.sim.stood_on_sheet == times
 
 
 def test_a_lost_position_shifts_what_is_drawn_on_the_sheet() -> None:
