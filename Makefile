@@ -60,8 +60,8 @@ faults: $(VENV)/runtime ## Every fault of every simulated machine in three momen
 fuzz: $(VENV)/fuzz ## Random bytes into every parser, SECONDS_EACH (60) or BYTES (1e7) for each, whichever comes first
 	@$(BIN)/python -m tests.fuzz --seconds $(or $(SECONDS_EACH),60) --bytes $(or $(BYTES),1e7)
 
-torture: $(VENV)/runtime ## Kill everything that can be killed, at random moments: N=200, SEED=1
-	@$(BIN)/python -m tests.torture $(or $(N),200) --seed $(or $(SEED),1)
+torture: $(VENV)/runtime ## Kill everything that can be killed, at random moments: N=200, SEED=1, MACHINES=1
+	@$(BIN)/python -m tests.torture $(or $(N),200) --seed $(or $(SEED),1) --machines $(or $(MACHINES),1)
 
 soak: $(VENV)/runtime ## Draw for HOURS=72 of the machine's clock and DRAWINGS=5000: growth of memory, files and log
 	@$(BIN)/python -m tests.soak --hours $(or $(HOURS),72) --drawings $(or $(DRAWINGS),5000)

@@ -24,10 +24,11 @@ def main() -> int:
     parser.add_argument("kills", type=int, nargs="?", default=200, metavar="N")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, metavar="K", help="begin with this kill of the seed, from 0")
+    parser.add_argument("--machines", type=int, default=1, choices=[1, 2], help="in the one daemon")
     parser.add_argument("--whole", action="store_true", help="plan with the network too, which takes longer")
     options = parser.parse_args()
     folder = Path(tempfile.mkdtemp(prefix="torture-"))
-    with Torture(folder, options.seed, say=say, whole=options.whole) as torture:
+    with Torture(folder, options.seed, say=say, whole=options.whole, machines=options.machines) as torture:
         torture.run(options.kills, first=options.first)
         found = torture.checks.found
     for words in (*found.lost.values(), *found.doubled.values(), *found.wrong_prefix.values(), *found.other.values()):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -39,11 +40,12 @@ class Found:
 class Checks:
     """Compares what lies in the state folder with the pictures that were dropped and with the ink."""
 
-    def __init__(self, daemon: Daemon, machine: Machine) -> None:
-        self._daemon, self._machine = daemon, machine
+    def __init__(self, daemon: Daemon, machines: Sequence[Machine]) -> None:
+        self._daemon, self._machines = daemon, machines
         self._dropped: dict[str, str] = {}
         self._programs: dict[str, list[Line]] = {}
-        self._known: list[Inked | None] = []
+        self._known: dict[str, list[Inked | None]] = {machine.name: [] for machine in machines}
+        """What each line of ink is, on the sheet of each machine."""
         self.found = Found()
         self.cancelled: set[str] = set()
         self.planners_killed: Counter[str] = Counter()
@@ -57,7 +59,7 @@ class Checks:
         """Look at everything. The daemon may be at work meanwhile: only what is over is judged."""
         jobs = told(self._daemon.journal)
         # What is certain is on the sheet later; what is there is promised later still.
-        self._check_ink(jobs, self._machine.sheet())
+        self._check_ink(jobs, {machine.name: machine.sheet() for machine in self._machines})
         self._check_promises(told(self._daemon.journal))
         self._check_pictures(jobs)
         for wrong in faults_of(self._daemon.journal):
@@ -66,7 +68,7 @@ class Checks:
     def at_the_end(self) -> None:
         """Nothing is under way any more: every job is over, and none has ended before its first ink by our doing."""
         jobs = told(self._daemon.journal)
-        inked = {known.job for known in self._known if known}
+        inked = {known.job for known in self._inked()}
         for job in jobs.values():
             if not job.over:
                 self.found.lost[job.id] = f"job {job.id} is still {job.state.value}: {job.words}"
@@ -98,21 +100,31 @@ class Checks:
                 wrong["doubled", name] = f"the picture {name} is there {copies[key]} times"
         return wrong
 
-    def _check_ink(self, jobs: dict[str, Told], sheet: Sheet) -> None:
+    def _check_ink(self, jobs: dict[str, Told], sheets: dict[str, Sheet]) -> None:
         programs = {job.id: self._program(job.id) for job in jobs.values() if State.DRAWING in job.states}
-        self._identify(sheet.lines, programs)
-        inked = Counter((known.job, known.stroke) for known in self._known if known)
-        for (job, stroke), times in inked.items():
-            if times > 1:
-                self.found.doubled[f"{job} {stroke}"] = f"stroke {stroke} of job {job} was inked {times} times"
-        for number, known in enumerate(self._known):
-            if known is None:
-                self.found.wrong_prefix[f"line {number}"] = f"line {number} of the ink is of no stroke of any job"
+        for machine, sheet in sheets.items():
+            self._identify(self._known[machine], sheet.lines, programs)
+        self._check_times()
         for job in jobs.values():
             if job.over:
                 self._check_words(job)
             if missing := set(range(job.certain)) - self._strokes(job, whole=True):
                 self._wrong(job, f"strokes {sorted(missing)}, certain in the journal, are not there whole")
+
+    def _check_times(self) -> None:
+        """Every line of ink is a stroke, each stroke is there once, and those of a job are on one sheet."""
+        for machine, lines in self._known.items():
+            for number, known in enumerate(lines):
+                if known is None:
+                    words = f"line {number} of the ink of {machine} is of no stroke of any job"
+                    self.found.wrong_prefix[f"line {machine} {number}"] = words
+        for (job, stroke), times in Counter((known.job, known.stroke) for known in self._inked()).items():
+            if times > 1:
+                self.found.doubled[f"{job} {stroke}"] = f"stroke {stroke} of job {job} was inked {times} times"
+        on = Counter(job for lines in self._known.values() for job in {known.job for known in lines if known})
+        for job, machines in on.items():
+            if machines > 1:
+                self.found.doubled[job] = f"ink of job {job} is on the sheets of {machines} machines"
 
     def _check_promises(self, jobs: dict[str, Told]) -> None:
         """No stroke was touched before the journal said that it may be."""
@@ -120,19 +132,23 @@ class Checks:
             if beyond := {stroke for stroke in self._strokes(job) if stroke >= job.possible}:
                 self._wrong(job, f"strokes {sorted(beyond)} were touched without a word in the journal")
 
-    def _identify(self, lines: list[Line], programs: dict[str, list[Line]]) -> None:
+    def _inked(self) -> Iterator[Inked]:
+        """Every line of ink that is known, of all machines."""
+        return (known for lines in self._known.values() for known in lines if known)
+
+    def _identify(self, known: list[Inked | None], lines: list[Line], programs: dict[str, list[Line]]) -> None:
         """The last line may have grown since, every other one is known once and for ever."""
         recent = dict(list(programs.items())[-6:])
-        for line in lines[max(0, len(self._known) - 1) :]:
+        for line in lines[max(0, len(known) - 1) :]:
             found = whose(line, recent) or whose(line, programs)
-            if len(self._known) > 0 and line is lines[len(self._known) - 1]:
-                self._known[-1] = found
+            if known and line is lines[len(known) - 1]:
+                known[-1] = found
             else:
-                self._known.append(found)
+                known.append(found)
 
     def _strokes(self, job: Told, *, whole: bool = False) -> set[int]:
         """Those of this job that are on the sheet, all or the whole ones."""
-        inked = (known for known in self._known if known and known.job == job.id)
+        inked = (known for known in self._inked() if known.job == job.id)
         return {known.stroke for known in inked if known.whole or not whole}
 
     def _check_words(self, job: Told) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from random import Random
 
@@ -20,9 +20,10 @@ OVER_WITHIN_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Bench:
-    """What a kill works on, and the dice that say how."""
+    """What a kill works on, and the dice that say how. machine: that one of `machines` which the kill is meant for."""
 
     daemon: Daemon
+    machines: Sequence[Machine]
     machine: Machine
     checks: Checks
     random: Random
@@ -41,39 +42,30 @@ def kill_the_worker(bench: Bench) -> None:
 
 
 def end_in_order(bench: Bench) -> None:
-    drawn, begun = _drawing(bench), _begun(bench)
+    before = _at_work(bench)
     bench.daemon.signal(signal.SIGTERM)
     code = bench.daemon.code()
     if code != 0:
         bench.checks.found.other[f"code {code}"] = f"SIGTERM ended the daemon with code {code}, not 0"
     _gone(bench)
-    # As for a stop: a machine that an earlier cut has locked with its pen down lifts it when it homes.
-    if drawn or _begun(bench) != begun:
-        _pen_is_up(bench, "SIGTERM")
+    _pens_are_up(bench, before, "SIGTERM")
     _start_again(bench)
 
 
 def stop_by_order(bench: Bench) -> None:
-    drawn, begun = _drawing(bench), _begun(bench)
+    before = _at_work(bench)
     if bench.daemon.order("stop") is None:
         bench.checks.found.other["stop"] = "the daemon did not obey a stop"
     _await_over(bench, _drawing(bench))
-    # Also after one that began while the order was on its way. Where there is none, nobody lifts a pen that an earlier
-    # cut has left down: it is lifted when the next drawing begins.
-    if drawn or _begun(bench) != begun:
-        _pen_is_up(bench, "a stop")
+    _pens_are_up(bench, before, "a stop")
 
 
 def cut_the_power(bench: Bench) -> None:
-    drawn = _drawing(bench)
-    bench.machine.happen("brown-out")
-    _await_over(bench, drawn)
+    _cut(bench, "brown-out")
 
 
 def unplug(bench: Bench) -> None:
-    drawn = _drawing(bench)
-    bench.machine.happen("unplug")
-    _await_over(bench, drawn)
+    _cut(bench, "unplug")
     time.sleep(bench.random.uniform(0, 1))
     bench.machine.happen("plug in")
 
@@ -119,6 +111,17 @@ KINDS: dict[str, tuple[Callable[[Bench], None], int]] = {
 """Each with what is done, and how often among the others."""
 
 
+def _cut(bench: Bench, sentence: str) -> None:
+    """It ends what this machine draws, and nothing that another one draws."""
+    drawn = _drawing(bench, bench.machine)
+    others = _drawing(bench) - drawn
+    bench.machine.happen(sentence)
+    _await_over(bench, drawn)
+    for job in others & _in(bench, State.INTERRUPTED, State.FAILED):
+        words = f"job {job} on another machine than {bench.machine.name} was ended by its {sentence}"
+        bench.checks.found.other[f"other {job}"] = words
+
+
 def _start_again(bench: Bench) -> None:
     bench.daemon.start()
     bench.daemon.await_ready()
@@ -136,17 +139,23 @@ def _gone(bench: Bench) -> None:
             os.kill(pid, signal.SIGKILL)
 
 
-def _drawing(bench: Bench) -> set[str]:
-    return _in(bench, *UNDER_THE_PEN)
+def _drawing(bench: Bench, machine: Machine | None = None) -> set[str]:
+    """On this machine, or on any."""
+    under = (job for job in told(bench.daemon.journal).values() if job.state in UNDER_THE_PEN)
+    return {job.id for job in under if machine is None or job.begun_on[-1] == machine.name}
 
 
 def _in(bench: Bench, *states: State) -> set[str]:
     return {job.id for job in told(bench.daemon.journal).values() if job.state in states}
 
 
-def _begun(bench: Bench) -> int:
-    """How many drawings have been begun since the first start."""
-    return sum(job.states.count(State.DRAWING) for job in told(bench.daemon.journal).values())
+def _at_work(bench: Bench) -> dict[str, tuple[bool, int]]:
+    """By the name of each machine: whether it draws, and how many drawings it has begun since the first start."""
+    jobs = told(bench.daemon.journal).values()
+    return {
+        machine.name: (bool(_drawing(bench, machine)), sum(job.begun_on.count(machine.name) for job in jobs))
+        for machine in bench.machines
+    }
 
 
 def _await_over(bench: Bench, drawn: set[str]) -> None:
@@ -154,6 +163,14 @@ def _await_over(bench: Bench, drawn: set[str]) -> None:
     await_(f"{', '.join(drawn)} is over", lambda: not drawn & _drawing(bench), within_s=OVER_WITHIN_S)
 
 
-def _pen_is_up(bench: Bench, after: str) -> None:
-    if not bench.machine.sheet().pen_up:
-        bench.checks.found.other[f"pen {after}"] = f"after {after} the pen was on the sheet"
+def _pens_are_up(bench: Bench, before: dict[str, tuple[bool, int]], after: str) -> None:
+    """That of each machine that drew, or has begun meanwhile.
+
+    Where one did not, nobody lifts a pen that an earlier cut has left down: it is lifted when the next drawing begins.
+    """
+    now = _at_work(bench)
+    for machine in bench.machines:
+        drew, begun = before[machine.name]
+        if (drew or now[machine.name][1] != begun) and not machine.sheet().pen_up:
+            words = f"after {after} the pen of {machine.name} was on the sheet"
+            bench.checks.found.other[f"pen {machine.name} {after}"] = words

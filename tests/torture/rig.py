@@ -1,4 +1,4 @@
-"""The bench: a simulated machine in one process, the daemon in another, and what both have left."""
+"""The bench: each simulated machine in a process of its own, the daemon in another, and what they have left."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,9 @@ settle_s = 0.02
 [sheet]
 box_mm = [40, 40]
 box_origin_mm = [5, 5]
-[machines.plotter]
+"""
+_MACHINE_TOML = """
+[machines.{name}]
 device = "grbl"
 url = "serial://{port}"
 home = "start"
@@ -75,8 +77,8 @@ def await_(what: str, seen: Callable[[], bool], *, within_s: float) -> None:
 class Machine:
     """A simulated GRBL on a pseudo terminal. It keeps its ink until `close`."""
 
-    def __init__(self, folder: Path) -> None:
-        self.port, self._ink = folder / "machine", folder / "ink.json"
+    def __init__(self, folder: Path, name: str) -> None:
+        self.name, self.port, self._ink = name, folder / name, folder / f"ink-{name}.json"
         command = [linedrawd(), "simulate", "grbl", "--url", _URL, "--pty", self.port]
         self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         await_("the machine is there", lambda: self.port.exists() or not self._runs, within_s=READY_WITHIN_S)
@@ -104,11 +106,12 @@ class Machine:
 class Daemon:
     """The daemon, on a state folder that outlives it. whole: `linedrawd` with its own planner, else a quick one."""
 
-    def __init__(self, folder: Path, port: Path, *, whole: bool) -> None:
-        self._whole = whole
+    def __init__(self, folder: Path, machines: Sequence[Machine], *, whole: bool) -> None:
+        self._whole, self._recorded = whole, len(machines) == 1
         self.state, self._said, self._config = folder / "state", folder / "linedrawd.txt", folder / "linedrawd.toml"
         self._mark = f"{_MARK}={folder}"
-        self._config.write_text(_TOML.format(port=port))
+        sections = [_MACHINE_TOML.format(name=machine.name, port=machine.port) for machine in machines]
+        self._config.write_text("".join([_TOML, *sections]))
         self.inbox, self.jobs, self.journal = (self.state / name for name in ("inbox", "jobs", "journal.sqlite"))
         self.inbox.mkdir(parents=True)
         self._process: subprocess.Popen[bytes] | None = None
@@ -127,10 +130,11 @@ class Daemon:
         """Start it; it may not be ready yet."""
         name, _, value = self._mark.partition("=")
         self._starts += 1
-        record = self._said.with_name(f"start-{self._starts}.record")
-        command: list[str | Path] = [sys.executable, "-m", "tests.torture.daemon", self._config, self.state, record]
+        record = [self._said.with_name(f"start-{self._starts}.record")] if self._recorded else []
+        command: list[str | Path] = [sys.executable, "-m", "tests.torture.daemon", self._config, self.state, *record]
         if self._whole:
-            command = [linedrawd(), "--config", self._config, "--state-dir", self.state, "--record", record]
+            command = [linedrawd(), "--config", self._config, "--state-dir", self.state]
+            command += ["--record", *record] if record else []
         with self._said.open("ab") as said:
             self._process = subprocess.Popen(command, stdout=said, stderr=said, env=os.environ | {name: value})
 
@@ -140,10 +144,11 @@ class Daemon:
         if not self.runs:
             raise Stuck(f"the daemon ended by itself with code {self.code()}: see {self._said}")
 
-    def order(self, name: str, job: str = "") -> str | None:
+    def order(self, name: str, machine: str = "") -> str | None:
         """What it answers; None when it refuses or does not answer."""
+        order = Order.model_validate({"order": name, "machine": machine})
         try:
-            return give_order(self.state / "run" / "control.sock", Order.model_validate({"order": name, "job": job}))
+            return give_order(self.state / "run" / "control.sock", order)
         except LinedrawError:
             return None
 

@@ -18,13 +18,17 @@ _ALL = re.compile(r"all (\d+) strokes are drawn")
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A job's steps, the words of the last one, and how many strokes are certainly drawn and may be touched."""
+    """A job's steps, the words of the last one, and how many strokes are certainly drawn and may be touched.
+
+    begun_on: the machine of each time that its drawing began.
+    """
 
     id: str
     states: tuple[State, ...]
     words: str
     certain: int = 0
     possible: int = 0
+    begun_on: tuple[str, ...] = ()
 
     @property
     def state(self) -> State:
@@ -49,16 +53,18 @@ def told(journal: Path) -> dict[str, Told]:
     """Every job, in the order in which they came; none while the journal cannot be read."""
     try:
         with closing(sqlite3.connect(f"file:{journal}?mode=ro", uri=True)) as rows:
-            events = rows.execute("SELECT job, state, words FROM events WHERE job <> '' ORDER BY number").fetchall()
+            events = rows.execute(
+                "SELECT job, state, words, machine FROM events WHERE job <> '' ORDER BY number"
+            ).fetchall()
             ink = {job: figures for job, *figures in rows.execute("SELECT job, certain, possible FROM ink")}
     except sqlite3.Error:
         return {}  # It is just being made.
     jobs: dict[str, Told] = {}
-    for job, name, words in events:
+    for job, name, words, machine in events:
         if name in _STATES:
-            before = jobs.get(job)
-            states = (*(before.states if before else ()), State(name))
-            jobs[job] = Told(job, states, words, *ink.get(job, (0, 0)))
+            before = jobs.get(job, Told(job, (), ""))
+            begun_on = (*before.begun_on, machine) if name == State.DRAWING.value else before.begun_on
+            jobs[job] = Told(job, (*before.states, State(name)), words, *ink.get(job, (0, 0)), begun_on)
     return jobs
 
 

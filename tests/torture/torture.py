@@ -16,8 +16,9 @@ from tests.torture.pictures import draw_picture
 from tests.torture.rig import Daemon, Machine, Stuck, await_
 from tests.torture.told import Told, told
 
-UNDONE = 3
-"""No more pictures are dropped while so many jobs wait."""
+UNDONE = {1: 3, 2: 5}
+"""No more pictures are dropped while so many jobs wait, by the number of machines."""
+MACHINES = {1: ("plotter",), 2: ("left", "right")}
 MOMENTS = {"drawing": 6, "planning": 2, "any": 3}
 """What the kill waits for before its own delay, and how often among the others."""
 DELAY_S = {"drawing": 2.0, "planning": 0.3, "any": 2.0}
@@ -26,13 +27,15 @@ DRAWN_WITHIN_S = 180.0
 
 
 class Torture:
-    """A daemon, a machine and what has been found; `folder` keeps all that they leave."""
+    """A daemon, its machines, 1 or 2, and what has been found; `folder` keeps all that they leave."""
 
-    def __init__(self, folder: Path, seed: int, *, say: Callable[[str], None], whole: bool = False) -> None:
+    def __init__(
+        self, folder: Path, seed: int, *, say: Callable[[str], None], whole: bool = False, machines: int = 1
+    ) -> None:
         self._folder, self._seed, self._say = folder, seed, say
-        self.machine = Machine(folder)
-        self.daemon = Daemon(folder, self.machine.port, whole=whole)
-        self.checks = Checks(self.daemon, self.machine)
+        self.machines = [Machine(folder, name) for name in MACHINES[machines]]
+        self.daemon = Daemon(folder, self.machines, whole=whole)
+        self.checks = Checks(self.daemon, self.machines)
         self._done: Counter[str] = Counter()
         self._pictures = 0
 
@@ -45,7 +48,8 @@ class Torture:
                 self.daemon.signal(signal.SIGTERM)
         if self.daemon.runs:
             self.daemon.code()
-        self.machine.close()
+        for machine in self.machines:
+            machine.close()
 
     def run(self, kills: int, *, first: int = 0) -> None:
         """Do so many kills, those of the seed from number `first` on; then let everything be drawn."""
@@ -62,13 +66,15 @@ class Torture:
         (kind,) = random.choices(list(KINDS), [weight for _, weight in KINDS.values()])
         (moment,) = random.choices(list(MOMENTS), list(MOMENTS.values()))
         delay_s = random.uniform(0, DELAY_S[moment])
+        machine = Random(f"{self._seed} {number} machine").choice(self.machines)
         words = f"{kind}, {delay_s:.2f} s after {'the pictures' if moment == 'any' else 'the ' + moment}"
+        words += f", {machine.name}" if len(self.machines) > 1 else ""
         try:
             self._drop(random)
             self._go_on()
             self._await(moment)
             time.sleep(delay_s)
-            KINDS[kind][0](Bench(self.daemon, self.machine, self.checks, random))
+            KINDS[kind][0](Bench(self.daemon, self.machines, machine, self.checks, random))
             self.checks.all()
         except Stuck as error:
             self.checks.found.other[f"stuck {number}"] = f"kill {number} ({words}): in vain waited until {error}"
@@ -81,7 +87,7 @@ class Torture:
 
     def _drop(self, random: Random) -> None:
         undone = sum(not job.over for job in told(self.daemon.journal).values())
-        for _ in range(min(random.randint(1, 2), max(0, UNDONE - undone))):
+        for _ in range(min(random.randint(1, 2), max(0, UNDONE[len(self.machines)] - undone))):
             self._pictures += 1
             part = self.daemon.inbox / f".p{self._pictures}.png"
             draw_picture(part, random)
@@ -90,8 +96,9 @@ class Torture:
             part.rename(whole)
 
     def _go_on(self) -> None:
-        """What a person does who has looked at the sheet."""
-        self.daemon.order("go")
+        """What a person does who has looked at the sheets."""
+        for machine in self.machines:
+            self.daemon.order("go", machine.name)
 
     def _await(self, moment: str) -> None:
         """Until a job is in that state, or nothing is left that could come into it."""
