@@ -75,7 +75,7 @@ class _Pieces(Tour):
     def shorten(self) -> None:
         """Settle, then try turns at crossings and keep those that save travel."""
         self._mind_bends(True)
-        self.settle(list(range(len(self.x))))
+        self.settle(list(range(len(self.places))))
         crossings = [node for node, doors in self._at_node.items() if len(doors) > 2]
         chance, cost = random.Random(0), self._cost()
         for number in range(min(_MOST_TRIES, _TRIES_A_CROSSING * len(crossings))):
@@ -85,7 +85,8 @@ class _Pieces(Tour):
         if self._nodes[a] == self._nodes[b]:
             (ax, ay), (bx, by) = self._along[a], self._along[b]
             return self._bend_mm * (1.0 + ax * bx + ay * by)
-        return 0.0 if self._free in (a, b) else _LIFT_MM + math.hypot(self.x[a] - self.x[b], self.y[a] - self.y[b])
+        free = self._free
+        return 0.0 if a == free or b == free else _LIFT_MM + math.dist(self.places[a], self.places[b])
 
     def _costs(self, near: list[Near]) -> list[Near]:
         """The neighbours of each door by what a link to them costs."""

@@ -37,7 +37,7 @@ def shared_points(polylines: Sequence[Points]) -> list[NDArray[np.bool_]]:
     every = np.concatenate([np.empty((0, 2)), *polylines])
     _, which, counts = np.unique(every, axis=0, return_inverse=True, return_counts=True)
     more = counts[which.reshape(-1)] > 1
-    return np.split(more, np.cumsum([len(polyline) for polyline in polylines])[:-1])
+    return np.split(more, np.cumsum([len(polyline) for polyline in polylines], dtype=np.intp))[:-1]
 
 
 def _chosen(points: Points, fixed: list[int], error: float) -> NDArray[np.bool_]:

@@ -36,7 +36,7 @@ def improve(ends: NDArray[np.float64], *, start: Place, end: Place | None) -> Co
     # A last segment leads from the end back to the start: the tour is a ring, and every move may turn either side.
     doors = np.concatenate([ends.reshape(-1, 2), [start if end is None else end, start]])
     tour = Tour(doors) if end is not None else _OpenTour(doors)
-    tour.settle(list(range(len(tour.x))))
+    tour.settle(list(range(len(tour.places))))
     chance = random.Random(0)
     for _ in range(min(_MOST_KICKS, _KICKS_A_SEGMENT * len(ends)) if len(ends) > 2 else 0):
         tour.kick(chance)
@@ -49,10 +49,10 @@ class Tour:
     `ring` holds the door by which each segment is entered, `at` the place of each segment in it.
     """
 
-    __slots__ = ("at", "moves", "near", "ring", "x", "y")
+    __slots__ = ("at", "moves", "near", "places", "ring")
 
     def __init__(self, doors: NDArray[np.float64]) -> None:
-        self.x, self.y = doors[:, 0].tolist(), doors[:, 1].tolist()
+        self.places: list[tuple[float, ...]] = [*map(tuple, doors.tolist())]
         self.near = nearest_doors(doors, _NEIGHBOURS)
         self.ring = list(range(0, len(doors), 2))
         self.at = list(range(len(self.ring)))
@@ -98,7 +98,7 @@ class Tour:
 
     def far(self, a: int, b: int) -> float:
         """What a link between two doors costs."""
-        return math.hypot(self.x[a] - self.x[b], self.y[a] - self.y[b])
+        return math.dist(self.places[a], self.places[b])
 
     def entered(self, door: int) -> bool:
         """Whether the segment is entered by this door; else it is left by it."""
@@ -113,18 +113,18 @@ class Tour:
 
     def _improve(self, door: int, moved: list[int]) -> float:
         """The first move that brings a neighbour of this door next to it and makes the tour shorter; 0 for none."""
-        ring, at = self.ring, self.at
+        ring, at, far = self.ring, self.at, self.far
         mate, entered = self.mate(door), ring[at[door >> 1]] == door
-        link = self.far(door, mate)
+        link = far(door, mate)
         for other, new in self.near[door]:
             if new >= link:
                 break
             if other == mate:
                 continue
             beyond = self.mate(other)
-            saved = link - new + self.far(other, beyond)
+            saved = link - new + far(other, beyond)
             if (ring[at[other >> 1]] == other) == entered:
-                gain = saved - self.far(mate, beyond)
+                gain = saved - far(mate, beyond)
                 if gain > _LEAST_GAIN and self.short(door, other):
                     self.flip(door, mate, other, beyond)
                     moved += (door, mate, other, beyond)
@@ -137,15 +137,21 @@ class Tour:
     def _or_opt(self, doors: tuple[int, int, int, int], saved: float, moved: list[int]) -> float:
         """Carry the one to three segments that begin at a door into the link of another, the two doors linked."""
         near, before, target, beyond = doors
-        ring, size, place = self.ring, len(self.ring), self.at[near >> 1]
+        ring, far_of, place = self.ring, self.far, self.at[near >> 1]
+        size, one, other = len(ring), target >> 1, beyond >> 1
         step = 1 if ring[place] == near else -1
         for _ in range(min(_LONGEST_MOVED, size - 2)):
             code = ring[place]
-            if code >> 1 in (target >> 1, beyond >> 1):
+            if code >> 1 == one or code >> 1 == other:
                 return 0.0
             place = (place + step) % size
             far, after = (code ^ 1, ring[place]) if step > 0 else (code, ring[place] ^ 1)
-            gain = saved + self.far(far, after) - self.far(before, after) - self.far(far, beyond)
+            # No way is shorter than none: what cannot gain even so is not looked at further.
+            gain = saved + far_of(far, after)
+            if gain > _LEAST_GAIN:
+                gain -= far_of(before, after)
+            if gain > _LEAST_GAIN:
+                gain -= far_of(far, beyond)
             if gain > _LEAST_GAIN and self.short(near, target):
                 moved += self.carry(near, far, target)[1]
                 return gain
@@ -202,5 +208,5 @@ class _OpenTour(Tour):
     __slots__ = ()
 
     def far(self, a: int, b: int) -> float:
-        end = len(self.x) - 2
-        return 0.0 if end in (a, b) else super().far(a, b)
+        end = len(self.places) - 2
+        return 0.0 if a == end or b == end else math.dist(self.places[a], self.places[b])

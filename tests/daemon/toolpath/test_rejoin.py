@@ -39,6 +39,10 @@ def test_strokes_that_share_no_point_stay_as_they_are() -> None:
     assert rejoined(tour, start_mm=START, end_mm=END) == tuple(tour)
 
 
+def test_no_stroke_stays_none() -> None:
+    assert rejoined((), start_mm=START, end_mm=END) == ()
+
+
 @settings(max_examples=20, deadline=None)
 @given(st.lists(walks, min_size=1, max_size=7))
 def test_the_same_strokes_give_the_same_lines(strokes: list[Stroke]) -> None:
