@@ -86,7 +86,7 @@ class _Pieces(Tour):
             (ax, ay), (bx, by) = self._along[a], self._along[b]
             return self._bend_mm * (1.0 + ax * bx + ay * by)
         free = self._free
-        return 0.0 if a == free or b == free else _LIFT_MM + math.dist(self.places[a], self.places[b])
+        return 0.0 if free in (a, b) else _LIFT_MM + math.dist(self.places[a], self.places[b])
 
     def _costs(self, near: list[Near]) -> list[Near]:
         """The neighbours of each door by what a link to them costs."""

@@ -209,4 +209,4 @@ class _OpenTour(Tour):
 
     def far(self, a: int, b: int) -> float:
         end = len(self.places) - 2
-        return 0.0 if a == end or b == end else math.dist(self.places[a], self.places[b])
+        return 0.0 if end in (a, b) else math.dist(self.places[a], self.places[b])
