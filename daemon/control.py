@@ -80,6 +80,10 @@ class NoDaemon(LinedrawError):
     """Nobody answers at the control socket."""
 
 
+class NotAllowed(LinedrawError):
+    """There is a control socket, for others than this user."""
+
+
 class Answer(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -215,7 +219,10 @@ def _check_length(path: Path) -> None:
 
 
 def give_order(path: Path, order: Order) -> str:
-    """Ask the running daemon. Returns what it says; raises LinedrawError when it refuses, NoDaemon when none runs."""
+    """Ask the running daemon. Returns what it says.
+
+    Raises LinedrawError when it refuses, NoDaemon when none runs, NotAllowed when this user may not ask it.
+    """
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
         connection.settimeout(MOVED_WITHIN_S if order.moves else ANSWER_WITHIN_S)
         try:
@@ -223,11 +230,23 @@ def give_order(path: Path, order: Order) -> str:
             connection.sendall(order.model_dump_json().encode() + b"\n")
             said = connection.makefile("rb").readline()
             answer = Answer.model_validate(json.loads(said))
+        except PermissionError:
+            raise NotAllowed(
+                f"you may not give orders at {path}: `sudo adduser USER {_group(path)}` and log in again"
+            ) from None
         except (OSError, ValueError) as error:
             raise NoDaemon(f"no daemon answers at {path} ({error}): start it, or give its --state-dir") from None
     if not answer.ok:
         raise LinedrawError(answer.words)
     return answer.words
+
+
+def _group(path: Path) -> str:
+    """Of those who may give orders; where that cannot be seen, the one that the package makes."""
+    try:
+        return path.group()
+    except (OSError, KeyError):
+        return "linedrawd"
 
 
 def _connect(connection: socket.socket, path: Path) -> None:

@@ -15,7 +15,7 @@ from daemon.cli import usb
 from daemon.cli.options import add_machine, add_places, read_file, settings_of
 from daemon.cli.scan import add_scanner
 from daemon.config import Machine, Settings
-from daemon.control import NoDaemon, Order, give_order
+from daemon.control import NoDaemon, NotAllowed, Order, give_order
 from daemon.errors import LinedrawError, MachineFault, NoMachine
 from daemon.jobs.devices import check, moves_of, opened
 from daemon.jobs.open_machine import OpenMachine
@@ -82,7 +82,7 @@ def findings(args: argparse.Namespace, *, ask: bool = True) -> Iterator[Finding]
     yield from _computer()
     yield from doctor.usb_findings(usb.look())
     yield _scanner(settings)
-    runs = _runs(settings)
+    runs = _runs(settings.paths.control)
     yield _button(settings, runs=runs)
     yield _daemon(settings, runs=runs)
     for name, machine in settings.machines.items() if ask or runs else ():
@@ -139,9 +139,11 @@ def _button(settings: Settings, *, runs: bool) -> Finding:
     return Finding("button", "ok", where)
 
 
-def _runs(settings: Settings) -> bool:
+def _runs(control: Path) -> bool:
+    """Also one that this user may not ask."""
     try:
-        give_order(settings.paths.control, Order(order="ping"))
+        with suppress(NotAllowed):
+            give_order(control, Order(order="ping"))
     except NoDaemon:
         return False
     return True
@@ -152,15 +154,13 @@ def _daemon(settings: Settings, *, runs: bool) -> Finding:
         return Finding(
             "daemon", "ok", f"runs on {settings.paths.state_dir}; {_status(settings).get('words') or 'idle'}"
         )
-    if settings.paths.control != _SERVICE:
-        with suppress(LinedrawError):
-            give_order(_SERVICE, Order(order="ping"))
-            return Finding(
-                "daemon",
-                "wrong",
-                f"none runs on {settings.paths.state_dir}, but that of the service does and may hold the port: look at "
-                "it with `sudo linedrawd doctor`, or end it with `sudo systemctl stop linedrawd`",
-            )
+    if settings.paths.control != _SERVICE and _runs(_SERVICE):
+        return Finding(
+            "daemon",
+            "wrong",
+            f"none runs on {settings.paths.state_dir}, but that of the service does and may hold the port: look at "
+            "it with `sudo linedrawd doctor`, or end it with `sudo systemctl stop linedrawd`",
+        )
     return Finding("daemon", "ok", f"none runs on {settings.paths.state_dir}, so this command asks the machine itself")
 
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import resource
 import socket
+import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
 import pytest
 
-from daemon.control import CONNECTIONS, LINE_BYTES, ControlServer, Order, give_order
+from daemon.control import LINE_BYTES, ControlServer, NotAllowed, Order, give_order
 from daemon.errors import DiskTrouble, LinedrawError
+
+NOBODY = 65534
 
 
 def obey(order: Order) -> str:
@@ -58,15 +64,36 @@ def test_garbage_is_refused_and_the_next_order_is_obeyed(path: Path, garbage: by
     assert give_order(path, Order(order="ping")) == "done: ping"
 
 
-def test_an_endless_line_is_cut_off(path: Path) -> None:
+def test_a_line_that_is_too_long_is_cut_off(path: Path) -> None:
     said = say(path, b"x" * (LINE_BYTES * 200))
     assert said == b"closed" or b"4096 bytes at most" in said
     assert give_order(path, Order(order="ping")) == "done: ping"
 
 
-def test_those_who_say_nothing_keep_nobody_out(path: Path) -> None:
+def test_of_a_line_of_a_gigabyte_only_the_beginning_is_taken(path: Path) -> None:
+    sent, much = 0, b"x" * 2**16
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection, suppress(ConnectionError):
+        connection.settimeout(10)
+        connection.connect(str(path))
+        while sent < 10**9:
+            sent += connection.send(much)
+    assert sent < 10**7
+    assert give_order(path, Order(order="ping")) == "done: ping"
+
+
+@pytest.fixture
+def many_files() -> Iterator[None]:
+    """More files may be open than is usual."""
+    before, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+    yield
+    resource.setrlimit(resource.RLIMIT_NOFILE, (before, most))
+
+
+@pytest.mark.usefixtures("many_files")
+def test_a_thousand_who_say_nothing_keep_nobody_out(path: Path) -> None:
     idle = []
-    for _ in range(3 * CONNECTIONS):
+    for _ in range(1000):
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         connection.connect(str(path))
         idle.append(connection)
@@ -104,6 +131,36 @@ def test_an_order_in_pieces_is_obeyed(path: Path) -> None:
 
 def test_only_the_owner_and_the_group_may_give_orders(path: Path) -> None:
     assert path.stat().st_mode & 0o777 == 0o660
+
+
+@pytest.fixture
+def as_nobody() -> Iterator[Path]:
+    """A folder that everybody may look into; this process is then another user, in no group, where it was root."""
+    before, root = (os.geteuid(), os.getegid(), os.getgroups()), os.geteuid() == 0
+    with tempfile.TemporaryDirectory() as name:
+        os.chmod(name, 0o755)
+        server = ControlServer(Path(name) / "c.sock", obey)
+        thread = Thread(target=server.run)
+        thread.start()
+        if root:
+            os.setgroups([])
+            os.setegid(NOBODY)
+            os.seteuid(NOBODY)
+        else:
+            (Path(name) / "c.sock").chmod(0)
+        yield Path(name)
+        if root:
+            os.seteuid(before[0])
+            os.setegid(before[1])
+            os.setgroups(before[2])
+        server.stop()
+        thread.join(10)
+
+
+def test_a_user_outside_the_group_gives_no_order_and_is_told_how_to_come_in(as_nobody: Path) -> None:
+    path = as_nobody / "c.sock"
+    with pytest.raises(NotAllowed, match=rf"may not give orders at {path}: `sudo adduser USER {path.group()}`"):
+        give_order(path, Order(order="stop"))
 
 
 def test_without_a_daemon_the_order_fails_with_a_sentence(tmp_path: Path) -> None:
