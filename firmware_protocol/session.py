@@ -98,11 +98,14 @@ class Found:
 class Paused:
     """The machine stands with the pen up, the job goes on with `resume`. stroke: the one that is drawn next.
 
-    None: no stroke is left. at_mm: where the running stroke was cut; None after a whole one.
+    None: no stroke is left. at_mm: where the running stroke was cut; None after a whole one. change: the program wants
+    another pen here, and the machine is parked; also: what a person does at the machine beside that, in words.
     """
 
     stroke: int | None
     at_mm: tuple[float, float] | None = None
+    change: bool = False
+    also: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,14 +193,18 @@ class Session(Protocol):
         """The first n strokes of the running job are certainly drawn, as far as is known now. 0 without a job."""
 
 
-class PausableSession(Session, Protocol):
-    """A session that can stand still in the middle of a job and go on."""
-
-    def pause(self, now: float, *, at_once: bool = False) -> None:
-        """Stand still with the pen up, at the end of the running stroke or at once; `Paused` is said when it does."""
+class ResumableSession(Session, Protocol):
+    """A session that stands still where its job wants another pen, and goes on."""
 
     def resume(self, now: float) -> None:
         """Go on after `Paused`, or tell a machine that is `Waiting` to. Raises LocalProtocolError when neither is."""
+
+
+class PausableSession(ResumableSession, Protocol):
+    """A session that can also stand still anywhere else in the middle of a job."""
+
+    def pause(self, now: float, *, at_once: bool = False) -> None:
+        """Stand still with the pen up, at the end of the running stroke or at once; `Paused` is said when it does."""
 
 
 class AdjustableSession(Session, Protocol):

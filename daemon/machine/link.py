@@ -21,6 +21,7 @@ from firmware_protocol.session import (
     NotReady,
     PausableSession,
     Ready,
+    ResumableSession,
     Session,
 )
 
@@ -42,6 +43,11 @@ def promise_nothing(touched: int, certain: int) -> int:
 
 
 @runtime_checkable
+class _Resumable(ResumableSession, Protocol):
+    """Asked of a session before it is told to go on."""
+
+
+@runtime_checkable
 class _Pausable(PausableSession, Protocol):
     """Asked of a session before it is paused."""
 
@@ -55,7 +61,7 @@ def obey(session: Session, kind: Kind, value: int | None, now: float) -> None:
     """Ask a session that can for what a person wants in the middle of a job. Raises LocalProtocolError."""
     if kind == "pause" and isinstance(session, _Pausable):
         session.pause(now, at_once=bool(value))
-    elif kind == "resume" and isinstance(session, _Pausable):
+    elif kind == "resume" and isinstance(session, _Resumable):
         session.resume(now)
     elif kind == "feed" and isinstance(session, _Adjustable) and value is not None:
         session.set_feed_percent(value, now)
@@ -167,12 +173,12 @@ class Link:
 
     def pause(self, *, at_once: bool) -> None:
         """Stand still with the pen up; `Paused` is heard then. Raises LinedrawError where the session cannot."""
-        self._check_pausable()
+        self._check(isinstance(self._session, _Pausable))
         self._wish("pause", at_once)
 
     def resume(self) -> None:
         """Go on, if it stands still. Raises LinedrawError where the session cannot."""
-        self._check_pausable()
+        self._check(isinstance(self._session, _Resumable))
         self._wish("resume")
 
     def feed(self, percent: int) -> None:
@@ -181,8 +187,8 @@ class Link:
             raise LinedrawError(f"{self._transport.name} cannot be made faster or slower from here")
         self._wish("feed", percent)
 
-    def _check_pausable(self) -> None:
-        if not isinstance(self._session, _Pausable):
+    def _check(self, can: bool) -> None:
+        if not can:
             raise LinedrawError(f"{self._transport.name} cannot be paused from here: use the machine's own feed hold")
 
     def _wish(self, kind: Kind, value: int | None = None) -> None:

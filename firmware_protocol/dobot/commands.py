@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from firmware_protocol.dobot.packet import LONGEST_LENGTH, Packet, ctrl
 from firmware_protocol.errors import LocalProtocolError, RemoteProtocolError
+from firmware_protocol.pens import is_pen_change
 
 Value: TypeAlias = float | int | str | bytes
 Values: TypeAlias = tuple[Value, ...]
@@ -213,7 +214,12 @@ def text_of(written: Command) -> str:
 
 
 def parse(text: str) -> Command:
-    """The command that a line holds. Raises LocalProtocolError that says what is wrong with it."""
+    """The command that a line holds; for the arm a pen change is a moment of rest.
+
+    Raises LocalProtocolError that says what is wrong with it.
+    """
+    if is_pen_change(text):
+        return command("WAIT", 1)
     name, *words = text.split(" ")
     kind = command(name).kind
     if kind.writes is None:

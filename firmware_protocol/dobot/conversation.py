@@ -234,12 +234,12 @@ class Conversation:
             self._end_job()
 
     def _enter_drawing(self, turn: Turn) -> None:
-        self.job.stop_before = None
+        self.job.stop_at_pen_change()
         self.events += [Resumed()] * (turn.signal is Signal.RESUME)
 
     def _enter_paused(self, _: Turn) -> None:
         cut = None if self.cut is None else self.on_sheet(self.cut)[:2]
-        self.events.append(Paused(self.job.stroke(self.job.taken), cut))
+        self.events.append(Paused(self.job.stroke(self.job.taken), cut, self.job.changes))
 
     def _enter_aborting(self, turn: Turn) -> None:
         self.cut = None

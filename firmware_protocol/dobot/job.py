@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from firmware_protocol.dobot import sentences
 from firmware_protocol.dobot.commands import Command, parse
 from firmware_protocol.errors import LocalProtocolError
+from firmware_protocol.pens import is_pen_change
 from firmware_protocol.session import Ended, JobLine, Verdict
 from firmware_protocol.strokes import strokes_before, strokes_touched
 
@@ -20,7 +21,8 @@ class Job:
     def __init__(self, lines: Sequence[JobLine]) -> None:
         self.commands = [_command(number, line.text) for number, line in enumerate(lines, 1)]
         self._texts = [line.text for line in lines]
-        self._strokes = [line.stroke for line in lines]
+        # A pen change belongs to no stroke: the one before it is whole without.
+        self._strokes = [None if is_pen_change(line.text) else line.stroke for line in lines]
         self.taken = 0
         """Lines in the arm's queue or behind it."""
         self.in_flight = False
@@ -54,7 +56,17 @@ class Job:
         line = self.taken + self.in_flight
         while 0 < line < len(self) and self._strokes[line] == self._strokes[line - 1]:
             line += 1
-        self.stop_before = line
+        self.stop_before = line if self.stop_before is None else min(line, self.stop_before)
+
+    def stop_at_pen_change(self) -> None:
+        """Stand still before the next line that wants another pen, behind the one at which it stands."""
+        rest = range(self.taken + 1, len(self))
+        self.stop_before = next((line for line in rest if is_pen_change(self._texts[line])), None)
+
+    @property
+    def changes(self) -> bool:
+        """The pen is changed before the next line."""
+        return self.taken < len(self) and is_pen_change(self._texts[self.taken])
 
     def executes(self, lines: int) -> None:
         """So many lines are executed."""

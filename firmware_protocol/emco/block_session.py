@@ -115,6 +115,8 @@ class BlockSession(Transfer):
     def _finish_if_empty(self) -> None:
         if self._talk.job is not None and self._talk.job.empty:
             self._talk.go(Signal.EMPTY)
+        elif self._talk.job is not None and self._talk.job.changes:
+            self._talk.go(Signal.CHANGE)
 
     def _refused(self) -> None:
         self._refusals += 1

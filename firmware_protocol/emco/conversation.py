@@ -9,12 +9,17 @@ from firmware_protocol.emco import sentences
 from firmware_protocol.emco.job import Job, Times, check_plain
 from firmware_protocol.emco.states import STOPPING, TRANSITIONS, Signal, State
 from firmware_protocol.errors import LocalProtocolError
-from firmware_protocol.session import Ended, Event, JobLine, NotReady, Ready, Sent, Verdict, Waiting
+from firmware_protocol.session import Ended, Event, JobLine, NotReady, Paused, Ready, Resumed, Sent, Verdict, Waiting
 
 SETTLE_S = 5.0
 """Beside the time model: for the way to the first place, which begins nobody knows where, and for lifting the pen."""
 STOP_WITHIN_S = 25.0
 """A stop that has not come to its end after this long is reported as it is; the link waits 30 s."""
+
+_DRAWS = {State.DRAWING, State.CHANGING, State.SETTLING}
+"""Here the control draws what it has."""
+_STANDS = {State.DRAWING, State.CHANGING, State.PAUSED}
+"""Here it reads nothing that could end its program."""
 
 _VERDICTS = {
     Signal.TIME: Verdict.FINISHED,
@@ -71,7 +76,15 @@ class Conversation:
         """End the program for the control where that is possible, else only the sending."""
         # A control that has read nothing yet would take the lines of the end for another program.
         closes = bool(self.control.on_stop) and self.job is not None and self.job.begun > 0
-        self.go(Signal.STOP if closes and self.state is not State.DRAWING else Signal.ABORT)
+        self.go(Signal.STOP if closes and self.state not in _STANDS else Signal.ABORT)
+
+    def resume(self) -> None:
+        """Raises LocalProtocolError where no pen is being changed."""
+        if self.state is not State.PAUSED or self.job is None:
+            raise LocalProtocolError(f"nothing is paused ({self.state.value}): resume after a pen change")
+        self.job.go_on()
+        self.events.append(Resumed())
+        self.go(Signal.RESUME)
 
     def go(self, signal: Signal, why: str = "") -> None:
         """Change the state as the table says and do what the new state begins with."""
@@ -82,10 +95,12 @@ class Conversation:
         if signal is Signal.STOP and after in STOPPING and self.job is not None:
             self.job.close(self.control.on_stop)
             self.stop_until = self.now + STOP_WITHIN_S
-        elif signal is Signal.EMPTY and self.job is not None:
+        elif signal in {Signal.EMPTY, Signal.CHANGE} and self.job is not None:
             self.drawn_at = max(self.job.drawn_at, self.now) + SETTLE_S
             if after is State.DRAWING:
                 self.events.append(Sent(self.drawn_at - self.now))
+        elif after is State.PAUSED and self.job is not None:
+            self.events.append(Paused(self.job.next_stroke, change=True, also=sentences.THEN_START))
         elif after in {State.READY, State.LOST}:
             self._end(before, signal, why)
 
@@ -95,7 +110,7 @@ class Conversation:
     def expire(self, now: float) -> None:
         """What follows from the time model, and from a stop that takes too long."""
         self.now = now
-        if self.state in {State.DRAWING, State.SETTLING} and now >= self.drawn_at:
+        if self.state in _DRAWS and now >= self.drawn_at:
             self.go(Signal.TIME)
         elif self.state in STOPPING and now >= self.stop_until:
             self.go(Signal.LATE)
@@ -104,7 +119,7 @@ class Conversation:
         """When `expire` wants to be called again."""
         if self.events:
             return [self.now]
-        times = [self.drawn_at] if self.state in {State.DRAWING, State.SETTLING} else []
+        times = [self.drawn_at] if self.state in _DRAWS else []
         return [*times, self.stop_until] if self.state in STOPPING else times
 
     def told(self) -> list[Event]:

@@ -47,6 +47,10 @@ class Dialect:
         """The lines behind M30."""
         return () if self.name == "siemens" else ("%",)
 
+    def note(self, words: str) -> str:
+        """A comment behind the words of a block, which a person reads on the control's screen."""
+        return f"; {words}" if self.name == "siemens" else f"({words})"
+
     def check_name(self, program: str) -> None:
         """Raises LocalProtocolError for a name that the control does not take."""
         pattern = SIEMENS_NAME if self.name == "siemens" else _FANUC_NAME

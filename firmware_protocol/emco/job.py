@@ -9,6 +9,7 @@ from itertools import accumulate, pairwise
 from typing import TypeAlias
 
 from firmware_protocol.errors import LocalProtocolError, ProtocolError
+from firmware_protocol.pens import is_pen_change
 from firmware_protocol.session import Ended, JobLine, Verdict
 from firmware_protocol.strokes import strokes_before, strokes_touched
 
@@ -36,6 +37,8 @@ class Job:
         self._rest = b""
         self._earliest: list[float] = []
         self._cut = len(texts)
+        self._stops = [number for number, text in enumerate(texts, 1) if is_pen_change(text)]
+        """Behind so many blocks nothing is sent before the pen has been changed."""
         self.begun = 0
         """Blocks of which at least a byte has been handed over."""
         self.handed = 0
@@ -55,6 +58,20 @@ class Job:
         """Nothing is left to hand over."""
         return self.begun == len(self.blocks) and not self._rest
 
+    @property
+    def changes(self) -> bool:
+        """The pen is changed before anything more is handed over."""
+        return bool(self._stops) and self.begun == self._stops[0] and not self._rest
+
+    @property
+    def next_stroke(self) -> int | None:
+        """The stroke that the next block belongs to."""
+        return self._strokes[self.begun]
+
+    def go_on(self) -> None:
+        """The pen has been changed."""
+        del self._stops[0]
+
     def text(self, block: int) -> str:
         return self.blocks[block].decode("ascii").rstrip()
 
@@ -70,7 +87,7 @@ class Job:
     def touched(self, *, most: int) -> int:
         """No stroke from this number on was taken, nor will be with the next `most` bytes."""
         block, left = self.begun, most - len(self._rest)
-        while left > 0 and block < len(self.blocks):
+        while left > 0 and block < (self._stops or [len(self.blocks)])[0]:
             left -= len(self.blocks[block])
             block += 1
         return strokes_touched(self._strokes, min(block, self._cut))
@@ -78,7 +95,7 @@ class Job:
     def take(self, most: int) -> bytes:
         """The next `most` bytes at most, to be written now."""
         taken = b""
-        while len(taken) < most and not self.empty:
+        while len(taken) < most and not (self.empty or self.changes):
             if not self._rest:
                 self._rest = self.blocks[self.begun]
                 self.begun += 1
@@ -107,7 +124,7 @@ class Job:
 
     def close(self, texts: Sequence[str]) -> None:
         """What has not begun is replaced by these lines, of which none is a stroke's."""
-        self._cut = self.begun
+        self._cut, self._stops = self.begun, []
         self.blocks[self.begun :] = [text.encode("ascii") + self._line_end for text in texts]
         self._ends = list(accumulate(map(len, self.blocks)))
 

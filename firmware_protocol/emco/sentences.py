@@ -5,6 +5,7 @@ from __future__ import annotations
 PRESS_START = (
     "the control has not asked for the program yet: choose reading by the serial line at the control and press START"
 )
+THEN_START = "press START at the control, which waits at M0"
 FINISHED = "every line was handed over and, by the time model, drawn: look at the sheet, the control does not say so"
 NOT_BEGUN = "stopped on request before anything was sent"
 STOPPED = "stopped on request: the control was told to lift the pen and end; by the time model it has done so"

@@ -79,6 +79,8 @@ class XonXoffSession(Transfer):
         elif talk.state in SENDING and talk.job is not None:
             if talk.job.empty and now >= self._free_at:
                 talk.go(Signal.EMPTY)
+            elif talk.job.changes and now >= self._free_at:
+                talk.go(Signal.CHANGE)
             else:
                 self._check_ears(now)
         talk.expire(now)

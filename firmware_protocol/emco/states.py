@@ -13,6 +13,8 @@ class State(Enum):
     SENDING = "sending"
     HELD = "held by XOFF"
     DRAWING = "everything is sent, the control draws"
+    CHANGING = "everything before a pen change is sent, the control draws"
+    PAUSED = "the pen is being changed"
     CLOSING = "sending the end after a stop"
     CLOSING_HELD = "held by XOFF after a stop"
     SETTLING = "the end is sent after a stop, the control draws what it has"
@@ -26,6 +28,8 @@ class Signal(Enum):
     GO = auto()
     HOLD = auto()
     EMPTY = auto()
+    CHANGE = auto()
+    RESUME = auto()
     TIME = auto()
     STOP = auto()
     ABORT = auto()
@@ -46,6 +50,10 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     (State.HELD, Signal.GO): State.SENDING,
     (State.SENDING, Signal.EMPTY): State.DRAWING,
     (State.DRAWING, Signal.TIME): State.READY,
+    # The control stops by itself where the pen is changed; what follows is sent when a person says so.
+    (State.SENDING, Signal.CHANGE): State.CHANGING,
+    (State.CHANGING, Signal.TIME): State.PAUSED,
+    (State.PAUSED, Signal.RESUME): State.SENDING,
     # A stop with lines that end the program for the control.
     (State.SENDING, Signal.STOP): State.CLOSING,
     (State.HELD, Signal.STOP): State.CLOSING_HELD,
@@ -58,6 +66,8 @@ TRANSITIONS: dict[tuple[State, Signal], State] = {
     (State.SENDING, Signal.ABORT): State.LOST,
     (State.HELD, Signal.ABORT): State.LOST,
     (State.DRAWING, Signal.ABORT): State.LOST,
+    (State.CHANGING, Signal.ABORT): State.LOST,
+    (State.PAUSED, Signal.ABORT): State.LOST,
     # A control that does not take what it should, or not in time.
     (State.SENDING, Signal.LATE): State.LOST,
     (State.HELD, Signal.LATE): State.LOST,

@@ -24,6 +24,11 @@ class Transfer:
         self._talk.now = now
         self._talk.stop()
 
+    def resume(self, now: float) -> None:
+        """See `ResumableSession.resume`: after a pen change, the only pause that can be made from here."""
+        self._talk.now = now
+        self._talk.resume()
+
     def unplugged(self, now: float) -> list[Event]:
         """See `Session.unplugged`."""
         self._talk.now = now

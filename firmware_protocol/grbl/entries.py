@@ -86,6 +86,7 @@ def _leaving(talk: Conversation, _: Cause) -> None:
 def _streaming(talk: Conversation, cause: Cause) -> None:
     assert talk.job is not None
     talk.events += [Resumed()] * (cause.signal is Signal.RESUME)
+    talk.job.leg.end_before_change()
     talk.flow, talk.astray, talk.elsewhere, talk.waits_for = talk.job.leg.flow, 0, 0, ""
 
 

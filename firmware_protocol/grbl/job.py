@@ -91,7 +91,7 @@ class Job:
                 self._certain, strokes_touched([part.stroke for part in self.leg.parts], len(self.leg.parts))
             )
         stroke = next((part.stroke for part in self._next.parts if part.stroke is not None), None)
-        return Paused(stroke, self.leg.held_at[:2] if self.leg.held_at else None)
+        return Paused(stroke, self.leg.held_at[:2] if self.leg.held_at else None, self.leg.changes)
 
     def go_on(self) -> None:
         """Take up the lines that the pause has left."""

@@ -10,6 +10,7 @@ from firmware_protocol.grbl.flow import BARRIER, LONGEST_LINE, SEGMENT_LINES, Fl
 from firmware_protocol.grbl.path import NOWHERE, Modal, Path, Spot
 from firmware_protocol.grbl.replies import Triple
 from firmware_protocol.grbl.rest import Part, from_line, from_spot
+from firmware_protocol.pens import is_pen_change
 from firmware_protocol.strokes import strokes_before, strokes_touched
 
 
@@ -34,6 +35,8 @@ class Leg:
         self.path = Path(texts, start, steps_mm=controller.steps_mm)
         self.flow = Flow(self._wire(texts, 0), room_bytes=controller.buffer_bytes if counting else None)
         self._later: list[Part] = []
+        self._change: list[Part] = []
+        """Behind its last line, and before what comes later, the pen is changed."""
         self._spots: list[Spot] = []
         self._doubted: int | None = None
         self._seen = self._sound = 0
@@ -98,6 +101,19 @@ class Leg:
 
     # -- how it is cut --
 
+    @property
+    def changes(self) -> bool:
+        """The pen is changed where it ends."""
+        return bool(self._change) and not self.held
+
+    def end_before_change(self) -> None:
+        """Let it end where the pen is changed, if it is."""
+        end = next((number for number, part in enumerate(self.parts) if is_pen_change(part.text)), None)
+        if end is not None:
+            change = self.parts[end]
+            self._end_before(end, behind=end + 1)
+            self._change = [change]
+
     def end_after_stroke(self) -> bool:
         """Let it end behind the last stroke of which a line was sent; False when nothing is left behind that."""
         sent = self.flow.sent
@@ -106,13 +122,18 @@ class Leg:
         end = next(ends, None)
         if end is None:
             return False
+        self._end_before(end, behind=end)
+        return True
+
+    def _end_before(self, end: int, *, behind: int) -> None:
+        """behind: the part with which what comes later begins."""
         texts = [part.text for part in self.tail]
         lifted = self._state_after(texts, self.path.steps[end].before)
-        self._later = from_line(self.parts, self.path, end, lifted=lifted)
+        rest = from_line(self.parts, self.path, behind, lifted=lifted)
+        self._later, self._change = [*rest, *self._change, *self._later], []
         del self.parts[end:]
         self.path.replace_from(end, texts)
         self.flow.replace_from(end, self._wire(texts, end))
-        return True
 
     def next_leg(self) -> Leg | None:
         """What is left of the job, now that the pen is up; None where the place of a cut is not known."""
@@ -126,8 +147,8 @@ class Leg:
         elif self._spots[0].line < len(self.parts):
             left = from_spot(self.parts, self.path, self._spots[0], lifted=lifted)
         else:
-            return self._leg(self._later, lifted)
-        return self._leg([*left, *(self.tail if self._later else []), *self._later], lifted)
+            return self._leg([*self._change, *self._later], lifted)
+        return self._leg([*left, *(self.tail if self._later else []), *self._change, *self._later], lifted)
 
     def _leg(self, parts: Sequence[Part], start: Modal) -> Leg:
         return Leg(parts, start, lift=self._lift, controller=self._controller, counting=self._counting)

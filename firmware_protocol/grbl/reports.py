@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
@@ -21,7 +20,6 @@ ASTRAY_REPORTS = 2
 _WAITS = {"Hold": {"Hold:0"}, "Door": {"Door:0", "Door:1"}, "Sleep": {"Sleep"}}
 """States in which the machine goes on only when a person does something."""
 _CAUSES: dict[str, Literal["hold", "door", "sleep"]] = {"Hold": "hold", "Door": "door", "Sleep": "sleep"}
-_STOP_WORD = re.compile(r"M0+(?!\d)")
 
 
 def heard_report(talk: Conversation, report: StatusReport) -> None:
@@ -43,7 +41,7 @@ def _follow(talk: Conversation, report: StatusReport) -> None:
     """Does the pen go where the lines lead it, or wait for somebody?"""
     waits = report.state if report.word in _WAITS.get(report.state, ()) else ""
     if waits and waits != talk.waits_for:
-        talk.events.append(Waiting(_waiting(talk, waits), _CAUSES[waits]))
+        talk.events.append(Waiting(sentences.WAITING[waits], _CAUSES[waits]))
     if talk.waits_for and not waits:
         talk.events.append(Resumed())
     talk.waits_for = waits
@@ -73,14 +71,6 @@ def _go_astray(talk: Conversation) -> None:
     talk.go(Signal.ASTRAY, sentences.astray(talk.controller.place_mm, number, text))
 
 
-def _waiting(talk: Conversation, state: str) -> str:
-    if state == "Hold" and talk.flow.owed:
-        number, text = talk.named(talk.flow.answered)
-        if _STOP_WORD.search(text.replace(" ", "").upper()):
-            return sentences.program_stop(number, text)
-    return sentences.WAITING[state]
-
-
 def _found(talk: Conversation, report: StatusReport) -> None:
     talk.found = True
     if report.word in STANDS or report.state in {"Idle", "Alarm"}:
@@ -103,7 +93,7 @@ def _settled(talk: Conversation, report: StatusReport) -> None:
             _go_astray(talk)
         else:
             talk.urgent += ASK
-    elif not talk.job.pausing:
+    elif not (talk.job.pausing or talk.job.leg.changes):
         talk.go(Signal.STILL)
     elif paused := talk.job.stands():
         talk.events.append(paused)

@@ -67,11 +67,6 @@ def obstacles(findings: Sequence[Finding]) -> str:
     return "; ".join(finding.why for finding in findings)
 
 
-def program_stop(number: int, text: str) -> str:
-    """number: from 1."""
-    return f"the program waits in line {number} ({text!r}): do what it is there for, then let the drawing go on"
-
-
 def astray(place_mm: Triple, number: int, text: str) -> str:
     """number: from 1, of the next line to be answered."""
     x, y, z = place_mm

@@ -18,7 +18,7 @@ CHORD_MM = 0.005
 
 _MOTION = frozenset({0.0, 1.0, 2.0, 3.0})
 _SETTINGS = frozenset({17.0, 54.0, 64.0, 90.0, 94.0})
-_KNOWN_M = frozenset({5.0, 9.0, 30.0})
+_KNOWN_M = frozenset({0.0, 5.0, 9.0, 30.0})
 _ADDRESSES = frozenset({"G", "M", "X", "Y", "Z", "I", "J", "R", "CR=", "F", "T", "D"})
 _AXES = ("X", "Y", "Z")
 
@@ -60,6 +60,8 @@ class Interpreter:
         self.position_mm = at_mm
         self.ended = False
         """M30 has been read: what follows is passed over."""
+        self.stopped = False
+        """M0 has been read: the control waits for START."""
 
     def take(self, line: str) -> list[Move]:
         """The moves of the next line. Raises Alarm, with which the control stops reading."""
@@ -121,6 +123,7 @@ class Interpreter:
         if code not in _KNOWN_M:
             raise Alarm(f"M{code:g} is not known")
         self.ended = self.ended or code == 30
+        self.stopped = self.stopped or code == 0
 
     def _set_feed(self, mm_min: float) -> None:
         limit = self._room.feed_mm_min if self._room else math.inf

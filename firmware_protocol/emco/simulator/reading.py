@@ -56,6 +56,9 @@ class Reading:
             self._ask(now)
         if self._ended and not self.axes.moving:
             self._finish(now)
+        if self._program is not None and self._program.stopped and not self.axes.moving and self._start_at == _NEVER:
+            # The operator puts another pen in and presses START.
+            self._start_at = now + self._setup.start_s
 
     def rest(self, now: float, screen: str = "", *, start_in_s: float | None = None) -> None:
         """Stop dead and forget the program; the operator presses START again in so many seconds, or never."""
@@ -71,6 +74,9 @@ class Reading:
 
     def _start(self, now: float) -> None:
         self._start_at = _NEVER
+        if self._program is not None:
+            self._program.stopped = False
+            return
         self._program = Interpreter(self._setup.dialect, room=self._setup.room, at_mm=self.axes.position_mm(now))
         self.receiver.open = True
         if self._setup.link == "xonxoff":
@@ -86,7 +92,7 @@ class Reading:
             self._say(XON, now)
 
     def _read(self, now: float) -> None:
-        while self._program is not None and not self._stalled and self.axes.has_room:
+        while self._program and not (self._program.stopped or self._stalled) and self.axes.has_room:
             block = self.receiver.next_block()
             if block is None:
                 break

@@ -15,33 +15,6 @@ def waiting(play: Play) -> list[str]:
     return [event.why for event in play.events if isinstance(event, Waiting)]
 
 
-def with_a_stop() -> list[Line]:
-    lines = stroke_lines(CORNERS)
-    return [*lines[:6], Line("M0", 0), *lines[6:]]
-
-
-def test_a_program_stop_is_told_and_goes_on_when_it_is_told_to() -> None:
-    pair = Pair(plotter()).ready()
-    pair.session.start(with_a_stop(), pair.now)
-    told = pair.until(Waiting)
-    assert "waits in line 7 ('M0')" in told.why
-    pair.wait(600.0)
-    assert sum(isinstance(event, Waiting) for event in pair.events) == 1
-    pair.session.resume(pair.now)
-    assert pair.until(Ended).verdict is Verdict.FINISHED
-    assert missing_mm(CORNERS, pair.sim.ink) < TOUCHES_MM
-
-
-def test_a_program_stop_can_be_the_end() -> None:
-    pair = Pair(plotter()).ready()
-    pair.session.start(with_a_stop(), pair.now)
-    pair.until(Waiting)
-    pair.session.stop(pair.now)
-    end = pair.until(Ended)
-    assert (end.verdict, end.position_known, end.pen_lifted) == (Verdict.STOPPED, True, True)
-    assert end.strokes_certain <= 1 <= end.strokes_possible
-
-
 @pytest.mark.parametrize(("byte", "sentence", "cause"), [(b"!", "feed hold", "hold"), (b"\x84", "safety door", "door")])
 def test_a_hold_and_a_door_that_nobody_asked_for_are_told_and_end_well(byte: bytes, sentence: str, cause: str) -> None:
     pair = Pair(plotter()).ready()
