@@ -7,7 +7,8 @@ Machine coordinates are millimetres, x to the right, y up, seen from above the s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:  # A process that only streams a Program need not load numpy.
 
 Grey: TypeAlias = "NDArray[np.uint8]"
 """(H, W) uint8, 0 = black ink, 255 = white paper."""
+Colours: TypeAlias = "NDArray[np.uint8]"
+"""(H, W, 3) uint8: blue, green, red."""
 Map: TypeAlias = "NDArray[np.float32]"
 """(H, W) float32 in 0..1."""
 Points: TypeAlias = "NDArray[np.float64]"
@@ -50,6 +53,8 @@ class PageImage:
     """Full width of the pen line on this page, where it has been estimated."""
     px_per_mm: float | None = None
     """Of the given picture, where its file states a resolution."""
+    colour: Colours | None = None
+    """The given picture in colour, as a whole but maybe smaller; None where nobody asks for its colours."""
     steps: tuple[Step, ...] = ()
     """What was done to it, in order; empty for a page on which nothing had to be put right."""
     warnings: tuple[str, ...] = ()
@@ -91,6 +96,13 @@ class LineGraph:
     edges: tuple[Edge, ...]
     specks: int = 0
     """Pieces of ink that were too small to be anything but dirt, and were left out."""
+
+
+class NamedPen(NamedTuple):
+    """What a person calls a pen, and the colour of its lines as "#rrggbb"."""
+
+    name: str
+    colour: str
 
 
 class Line(NamedTuple):
@@ -157,6 +169,14 @@ class Toolpath:
     """Drawing px to machine mm."""
     start_mm: tuple[float, float] = (0.0, 0.0)
     park_mm: tuple[float, float] = (0.0, 0.0)
+    pens: tuple[NamedPen, ...] = ()
+    """By the strokes' `pen`; none where one pen without a name draws everything."""
+
+    @property
+    def passes(self) -> dict[int, str]:
+        """With which stroke each pen begins, and what it is called; empty where no pen is named."""
+        first = {stroke.pen: index for index, stroke in reversed(list(enumerate(self.strokes)))} if self.pens else {}
+        return {index: self.pens[pen].name for pen, index in sorted(first.items(), key=lambda each: each[1])}
 
     @property
     def drawn_mm(self) -> float:
@@ -189,3 +209,9 @@ class Program:
 
     lines: tuple[ProgramLine, ...]
     strokes: int
+    passes: Mapping[int, str] = field(default_factory=dict)
+    """With which stroke each pen begins, and what it is called; empty where one pen without a name draws it."""
+
+    def pen_of(self, stroke: int) -> str:
+        """What the pen of this stroke is called; "" where it has no name."""
+        return next((name for first, name in sorted(self.passes.items(), reverse=True) if first <= stroke), "")

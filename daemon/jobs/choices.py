@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from daemon.errors import LinedrawError
@@ -117,4 +118,4 @@ def program_left(job: Job, folder: Path, program: Program, *, without: Sequence[
     lines = tuple(
         line for line in program.lines if line not in without and (line.stroke is None or line.stroke >= first)
     )
-    return Program(lines, program.strokes)
+    return replace(program, lines=lines)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol, TypeAlias
 
 from daemon.config import DobotMachine, GrblMachine
@@ -21,7 +22,7 @@ HOME_GRBL, HOME_DOBOT = "$H", "HOME 0"
 
 def homed_first(program: Program, home: str) -> Program:
     """The program with the line before it that finds the machine's home."""
-    return Program((ProgramLine(home), *program.lines), program.strokes)
+    return replace(program, lines=(ProgramLine(home), *program.lines))
 
 
 class Moves(Protocol):

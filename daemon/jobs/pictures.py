@@ -14,7 +14,7 @@ from daemon.program.svg import write_svg
 from daemon.report import canvas
 from daemon.report.explain import explain
 from daemon.report.preview import preview
-from daemon.report.preview_html import Told, preview_html
+from daemon.report.preview_html import PenLook, Told, preview_html
 from daemon.shapes import Drawing, LineGraph, PageImage, Points, Program, Segmentation, Toolpath
 from daemon.toolpath.place import invert, place
 
@@ -34,6 +34,7 @@ def write_pictures(
     page = understood[0]
     told = replace(about, warnings=page.warnings, steps=[step.words for step in page.steps])
     told = replace(told, approve=_approval_of(folder, settings))
+    told = replace(told, pens=[PenLook(*pen) for pen in toolpath.pens] or told.pens)
     (machine,) = settings.machines.values()
     box_mm, corner_mm = settings.sheet.box_mm, box_origin_mm(settings.sheet, machine)
     sheet = preview(toolpath, box_mm=box_mm, box_origin_mm=corner_mm, seconds=told.seconds)

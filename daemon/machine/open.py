@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from daemon.errors import LinedrawError
@@ -192,7 +192,7 @@ class OpenedMachine(Generic[S]):
         if moved is None or self._corner_mm == (0.0, 0.0):
             return program
         lines = (ProgramLine(moved(line.text, self._corner_mm), line.stroke) for line in program.lines)
-        return Program(tuple(lines), program.strokes)
+        return replace(program, lines=tuple(lines))
 
     def _hear(self, event: Event) -> None:
         if isinstance(event, Status):

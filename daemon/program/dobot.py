@@ -8,6 +8,7 @@ from itertools import chain, pairwise
 from typing import TypeAlias
 
 from daemon.errors import OutOfReach
+from daemon.program.moves import pen_change
 from daemon.shapes import Program, ProgramLine, Toolpath
 from firmware_protocol.dobot.commands import ABSOLUTE, MOVL_XYZ, Value, command, text_of
 from firmware_protocol.dobot.kinematics import SHEET_ORIGIN_MM, Reach
@@ -32,7 +33,7 @@ def write_dobot(
     draw_mm_s: float,
     straight: str = "CP",
 ) -> Program:
-    """Speeds; for each stroke above its start, down, its points, up; park.
+    """Speeds; for each stroke above its start, down, its points, up; park, also before M0 where the pen is changed.
 
     sheet_origin_mm: where the sheet's lower left corner lies on the arm, seen from the base axis: the sheet's x is the
     arm's, forward, and its y the arm's, to the left. up_mm, down_mm: heights of the pen on the arm. Within a stroke
@@ -49,9 +50,10 @@ def write_dobot(
     speed_mm_s = draw_mm_s if straight == "PTP" else TRAVEL_MM_S
     lines = [ProgramLine(text) for text in _speeds(speed_mm_s, draw_mm_s)]
     for index, places in enumerate(strokes):
+        lines += pen_change(toolpath, index, _move(park, up_mm))
         lines += [ProgramLine(text, index) for text in _stroke(places, up_mm, down_mm, draw_mm_s, straight)]
     lines.append(ProgramLine(_move(park, up_mm)))
-    return Program(tuple(lines), len(strokes))
+    return Program(tuple(lines), len(strokes), toolpath.passes)
 
 
 def _on_arm(x_mm: float, y_mm: float, origin_mm: Place) -> Place:

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from daemon.errors import OutOfReach, SettingsError
 from daemon.program.gcode import ZPen
-from daemon.program.moves import Written, written
+from daemon.program.moves import Written, pen_change, written
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
 from firmware_protocol.emco.blocks import arc, number, rapid, straight
 from firmware_protocol.emco.dialects import DIALECTS, RAPID_MM_MIN, TRAVEL_MM, Dialect, DialectName
@@ -20,7 +20,7 @@ _END = ("M5", "M9", "M30")
 
 
 def write_emco(toolpath: Toolpath, *, dialect: DialectName, name: str, pen: ZPen, draw_mm_s: float) -> Program:
-    """Head; lift; for each stroke travel, lower, draw, lift; park; M5, M9, M30.
+    """Head; lift; for each stroke travel, lower, draw, lift; park; M5, M9, M30. Where the pen is changed: park, M0.
 
     name: of the program, in capitals; `Dialect.name_from` makes one. Positions in mm with at most 3 decimals, always
     with a point; every block states both of its coordinates. The program chooses no tool, starts no spindle and no
@@ -37,9 +37,11 @@ def write_emco(toolpath: Toolpath, *, dialect: DialectName, name: str, pen: ZPen
     spoken = DIALECTS[dialect]
     lines = [ProgramLine(text) for text in (*_head(spoken, name), *lift_lines(dialect, pen))]
     for index, stroke in enumerate(toolpath.strokes):
+        note = spoken.note(f"{toolpath.passes.get(index, '')} PEN".upper())
+        lines += pen_change(toolpath, index, _rapid(toolpath.park_mm), note=note)
         lines += [ProgramLine(text, index) for text in _stroke(stroke, pen, draw_mm_s)]
     end = (_rapid(toolpath.park_mm), *_END, *spoken.tail)
-    return Program((*lines, *map(ProgramLine, end)), len(toolpath.strokes))
+    return Program((*lines, *map(ProgramLine, end)), len(toolpath.strokes), toolpath.passes)
 
 
 def lift_lines(dialect: DialectName, pen: ZPen) -> tuple[str, ...]:

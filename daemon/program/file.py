@@ -11,17 +11,26 @@ from daemon.shapes import Program, ProgramLine
 _HEAD = "(linedrawd: {strokes} strokes)"
 _STROKE = "(stroke {index})"
 _NO_STROKE = "(no stroke)"
-_COMMENT = re.compile(r"\([^)]*\)|;(?!\$PATH=).*")
-"""`;$PATH=` belongs to the head of a Siemens program: it looks like a comment and is none."""
+_PEN = "(pen {name})"
+_COMMENT = re.compile(r"(?<!^M0 )(?:\([^)]*\)|;(?!\$PATH=).*)")
+"""`;$PATH=` belongs to the head of a Siemens program: it looks like a comment and is none. What stands behind M0 is for
+the screen of the control."""
 
 
 def program_text(program: Program) -> str:
-    """The file's text: a line a program line, before each change of stroke a comment that says which, from 0."""
+    """The file's text: a line a program line, before each change of stroke a comment that says which, from 0.
+
+    Where a pen begins, another one says what it is called.
+    """
     rows = [_HEAD.format(strokes=program.strokes)]
     before: int | None = None
     for line in program.lines:
         if line.stroke != before:
-            rows.append(_NO_STROKE if line.stroke is None else _STROKE.format(index=line.stroke))
+            if line.stroke is None:
+                rows.append(_NO_STROKE)
+            else:
+                rows += [_PEN.format(name=name) for first, name in program.passes.items() if first == line.stroke]
+                rows.append(_STROKE.format(index=line.stroke))
             before = line.stroke
         rows.append(line.text)
     return "\n".join(rows) + "\n"
@@ -50,11 +59,17 @@ def parse_program(text: str, *, name: str = "program") -> Program:
         raise LinedrawError(f"{name}, line 1: expected '{_HEAD.format(strokes='N')}': plan the picture again")
     lines: list[ProgramLine] = []
     stroke: int | None = None
+    passes: dict[int, str] = {}
+    pen = ""
     for row in rows[1:]:
         if (comment := re.fullmatch(r"\(stroke (\d+)\)", row)) is not None:
             stroke = int(comment[1])
+            passes |= {stroke: pen} if pen else {}
+            pen = ""
+        elif (comment := re.fullmatch(r"\(pen ([\w-]+)\)", row)) is not None:
+            pen = comment[1]
         elif row == _NO_STROKE:
             stroke = None
         elif command := _COMMENT.sub("", row).strip():
             lines.append(ProgramLine(command, stroke))
-    return Program(tuple(lines), int(head[1]))
+    return Program(tuple(lines), int(head[1]), passes)

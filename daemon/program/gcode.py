@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from daemon.program.moves import Written, written
+from daemon.program.moves import Written, pen_change, written
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
 
 
@@ -37,7 +37,7 @@ _HEAD = "G21 G90"
 
 
 def write_gcode(toolpath: Toolpath, *, pen: Pen, draw_mm_s: float) -> Program:
-    """Disengage; for each stroke travel, engage, draw, disengage; park.
+    """Disengage; for each stroke travel, engage, draw, disengage; park, also before M0 where the pen is changed.
 
     Positions in mm with 3 decimals. Every line states both of its coordinates, so that none depends on what another
     line left; F stands once a stroke, G1, G2 and G3 where they change. Arcs are G2 and G3 with I and J, the way from
@@ -51,10 +51,12 @@ def write_gcode(toolpath: Toolpath, *, pen: Pen, draw_mm_s: float) -> Program:
     if draw_mm_s <= 0 or (isinstance(pen, ZPen) and pen.plunge_mm_s <= 0):
         raise ValueError(f"a pen cannot be moved at draw_mm_s = {draw_mm_s} with {pen}: give speeds above 0")
     lines = [ProgramLine(_HEAD), *map(ProgramLine, _disengage(pen))]
+    park = f"G0 {_position(*toolpath.park_mm)}"
     for index, stroke in enumerate(toolpath.strokes):
+        lines += pen_change(toolpath, index, park)
         lines += [ProgramLine(text, index) for text in _stroke(stroke, pen, draw_mm_s)]
-    lines.append(ProgramLine(f"G0 {_position(*toolpath.park_mm)}"))
-    return Program(tuple(lines), len(toolpath.strokes))
+    lines.append(ProgramLine(park))
+    return Program(tuple(lines), len(toolpath.strokes), toolpath.passes)
 
 
 def lower_lines(pen: Pen) -> tuple[str, ...]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from daemon.shapes import Arc, Line, Stroke
+from daemon.shapes import Arc, Line, ProgramLine, Stroke, Toolpath
+from firmware_protocol.pens import PEN_CHANGE
 
 _DECIMALS = 3
 
@@ -38,6 +39,16 @@ def written(stroke: Stroke) -> Iterator[Written]:
         else:
             yield Written(end)
         at = end
+
+
+def pen_change(toolpath: Toolpath, stroke: int, *lines: str, note: str = "") -> list[ProgramLine]:
+    """What is said before the pen of this stroke is put in: `lines` park the machine, then it waits; mostly nothing.
+
+    They belong to the stroke before: a program that goes on from this one begins with its pen. note: behind the stop.
+    """
+    if not stroke or stroke not in toolpath.passes:
+        return []
+    return [ProgramLine(text, stroke - 1) for text in (*lines, f"{PEN_CHANGE} {note}".rstrip())]
 
 
 def _rounded(place: tuple[float, float]) -> tuple[float, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, TypeAlias
 
+from daemon.program.moves import pen_change
 from daemon.shapes import Program, ProgramLine, Stroke, Toolpath
 
 Units: TypeAlias = Literal["mm", "cm", "inch"]
@@ -26,9 +27,10 @@ def write_paper(toolpath: Toolpath, *, units: Units = "mm", draw_mm_s: float = 2
     away = f"G00 Z{round(_AWAY_MM / per_unit, 2):g}"
     lines = [ProgramLine(f"F{60 * draw_mm_s / per_unit:.2f}"), ProgramLine(away)]
     for index, stroke in enumerate(toolpath.strokes):
+        lines += pen_change(toolpath, index)
         lines += [ProgramLine(text, index) for text in _stroke(stroke, per_unit, away)]
     lines.append(ProgramLine("M30"))
-    return Program(tuple(lines), len(toolpath.strokes))
+    return Program(tuple(lines), len(toolpath.strokes), toolpath.passes)
 
 
 def _stroke(stroke: Stroke, mm_per_unit: float, away: str) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import groupby
 from typing import TypeAlias
 
 from daemon.shapes import Stroke, Toolpath
@@ -21,17 +22,21 @@ def write_svg(
 
     size_mm: width and height of the part of the sheet that is shown; corner_mm: its lower left corner in machine mm;
     line_mm: width of the pen's line. One unit of the view box is 1 mm. A dot is a path of length 0 with round ends.
+    The strokes of each pen that has a name are a group which is called so, in its colour.
     """
     width, height = (f"{side_mm:g}" for side_mm in size_mm)
+    look = f'stroke-width="{line_mm:g}" stroke-linecap="round" stroke-linejoin="round"'
     rows = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
         f'viewBox="0 0 {width} {height}">',
-        f'<g fill="none" stroke="black" stroke-width="{line_mm:g}" stroke-linecap="round" stroke-linejoin="round">',
-        *(_path(stroke, corner_mm[0], corner_mm[1] + size_mm[1]) for stroke in toolpath.strokes),
-        "</g>",
-        "</svg>",
     ]
-    return "\n".join(rows) + "\n"
+    for pen, strokes in groupby(toolpath.strokes, key=lambda stroke: stroke.pen):
+        name, colour = toolpath.pens[pen] if toolpath.pens else ("", "black")
+        called = f'id="{name}" ' if name else ""
+        rows.append(f'<g {called}fill="none" stroke="{colour}" {look}>')
+        rows += [_path(stroke, corner_mm[0], corner_mm[1] + size_mm[1]) for stroke in strokes]
+        rows.append("</g>")
+    return "\n".join([*rows, "</svg>"]) + "\n"
 
 
 def read_svg(text: str) -> list[LineMm]:

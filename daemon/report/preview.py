@@ -29,7 +29,7 @@ def preview(
     seconds: float | None = None,
     line_width_mm: float = 0.4,
 ) -> Picture:
-    """Strokes black, travel dashed, the box, the origin and the parked pen, a ruler in mm, and in words size and time.
+    """Strokes black or in their pens' colours, travel dashed, box, origin and parked pen, a ruler, size and time.
 
     box_mm: width and height of the box. box_origin_mm: its lower left corner, in machine mm like the toolpath.
     seconds: how long drawing will take, None where nobody knows. Returns uint8 (H, W, 3), y up like the machine.
@@ -42,7 +42,8 @@ def preview(
     canvas.box(picture, (left, bottom), (right, top), canvas.FRAME)
     _travel(sheet, toolpath)
     for stroke in toolpath.strokes:
-        canvas.line(picture, sheet.px(stroke.points), canvas.INK, line_width_mm * sheet.px_per_mm)
+        ink = _bgr(toolpath.pens[stroke.pen].colour) if toolpath.pens else canvas.INK
+        canvas.line(picture, sheet.px(stroke.points), ink, line_width_mm * sheet.px_per_mm)
     _marks(sheet, toolpath)
     _words(picture, toolpath, seconds)
     return picture
@@ -56,6 +57,11 @@ def in_words(seconds: float) -> str:
     if whole < 3600:
         return f"{whole // 60} min {whole % 60:02d} s"
     return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+def _bgr(colour: str) -> tuple[int, int, int]:
+    red, green, blue = bytes.fromhex(colour.removeprefix("#"))
+    return blue, green, red
 
 
 class _Sheet:
@@ -101,9 +107,10 @@ def _ruler(sheet: _Sheet, axis: int, at_mm: int) -> None:
 
 
 def _travel(sheet: _Sheet, toolpath: Toolpath) -> None:
-    stops = [np.array([toolpath.start_mm], float)]
-    stops += [stroke.points[[0, -1]] for stroke in toolpath.strokes]
-    stops.append(np.array([toolpath.park_mm], float))
+    park, stops = np.array([toolpath.park_mm], float), [np.array([toolpath.start_mm], float)]
+    for index, stroke in enumerate(toolpath.strokes):
+        stops += [*[park] * (index > 0 and index in toolpath.passes), stroke.points[[0, -1]]]
+    stops.append(park)
     for before, after in pairwise(stops):
         canvas.dashes(sheet.picture, sheet.px(np.stack([before[-1], after[0]])), _TRAVEL)
 

@@ -16,6 +16,15 @@ FidelityOf: TypeAlias = Literal["planned", "executed"]
 
 
 @dataclass(frozen=True, slots=True)
+class PenShare:
+    """What one of several pens draws."""
+
+    colour: str
+    strokes: int
+    drawn_mm: float
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """What is known of a job, in the order in which report.json tells it."""
 
@@ -31,6 +40,8 @@ class Report:
     strokes: int
     specks: int
     """Pieces of ink that were left out as dirt."""
+    pens: Mapping[str, PenShare]
+    """By name, in drawing order; none where one pen without a name draws everything."""
     drawn_mm: float
     travelled_mm: float
     estimated_s: float
@@ -82,6 +93,7 @@ def planned_report(
         edges=len(graph.edges),
         strokes=len(toolpath.strokes),
         specks=graph.specks,
+        pens=_pens(toolpath),
         drawn_mm=toolpath.drawn_mm,
         travelled_mm=toolpath.travelled_mm,
         estimated_s=estimated_s,
@@ -95,6 +107,14 @@ def planned_report(
         fidelity_of="planned",
         fidelity=fidelity,
     )
+
+
+def _pens(toolpath: Toolpath) -> dict[str, PenShare]:
+    found: dict[str, PenShare] = {}
+    for number, (name, colour) in enumerate(toolpath.pens):
+        mine = [stroke for stroke in toolpath.strokes if stroke.pen == number]
+        found[name] = PenShare(colour, len(mine), math.fsum(stroke.length for stroke in mine))
+    return found
 
 
 def executed_report(planned: Report, fidelity: Fidelity, *, real_s: float) -> Report:
@@ -117,7 +137,8 @@ def from_json(text: str) -> Report:
         raise ValueError(
             f"report.json is not of this version, see {', '.join(sorted(strange))}: plan the picture again"
         )
-    return Report(**{**found, "fidelity": _fidelity(found["fidelity"])})
+    pens = {name: PenShare(**share) for name, share in found["pens"].items()}
+    return Report(**{**found, "fidelity": _fidelity(found["fidelity"]), "pens": pens})
 
 
 def _fidelity(found: dict[str, Any] | None) -> Fidelity | None:

@@ -9,7 +9,7 @@ import numpy as np
 from daemon.errors import NothingToDraw
 from daemon.shapes import Affine, Drawing, Stroke, Toolpath
 from daemon.toolpath.curves import fitted
-from daemon.toolpath.order import order
+from daemon.toolpath.order import Place, order
 from daemon.toolpath.place import Layout, place, placement
 from daemon.toolpath.reach import check_reach
 from daemon.toolpath.rejoin import rejoined
@@ -53,7 +53,8 @@ def plan_toolpath(
     drawn from its other end, a closed one from another point, and strokes that share points may be joined otherwise
     there (see `rejoined`) unless rejoin is False; ends lie exactly where they were, and so do the crossings of
     polylines. Curves are fitted last, to the lines as they were traced and in mm of the machine, for only there arcs
-    are arcs. Raises NothingToDraw without strokes, OutOfReach before anything moves.
+    are arcs. All strokes of one pen are drawn before those of the next. Raises NothingToDraw without strokes, OutOfReach
+    before anything moves.
     """
     if not drawing.strokes:
         raise NothingToDraw(
@@ -65,12 +66,22 @@ def plan_toolpath(
     placed = _traced(drawing, from_px) if precision.curve_mm > 0 else _simplified(drawing, from_px, precision, error_mm)
     if reach_mm is not None:
         check_reach(placed, reach_mm=reach_mm, reach_low_mm=reach_low_mm, park_mm=park_mm)
-    tour = order(placed, start_mm=start_mm, end_mm=park_mm)
-    tour = rejoined(tour, start_mm=start_mm, end_mm=park_mm) if rejoin else tour
+    tour = _tour(placed, start_mm, park_mm, rejoin=rejoin)
     if precision.curve_mm > 0:
         room = None if reach_mm is None else (reach_low_mm, _added(reach_low_mm, reach_mm))
         tour = tuple(fitted(each, error_mm=error_mm, shortest_mm=precision.shortest_mm, room=room) for each in tour)
     return Toolpath(tour, from_px, start_mm, park_mm)
+
+
+def _tour(strokes: list[Stroke], start_mm: Place, park_mm: Place, *, rejoin: bool) -> tuple[Stroke, ...]:
+    """One pen after the other, each by a tour of its own that ends where it is changed."""
+    found: list[Stroke] = []
+    for pen in sorted({stroke.pen for stroke in strokes}):
+        mine = [stroke for stroke in strokes if stroke.pen == pen]
+        begin_mm = park_mm if found else start_mm
+        tour = order(mine, start_mm=begin_mm, end_mm=park_mm)
+        found += rejoined(tour, start_mm=begin_mm, end_mm=park_mm) if rejoin else tour
+    return tuple(found)
 
 
 def _error_mm(from_px: Affine, precision: Precision) -> float:
