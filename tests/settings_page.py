@@ -62,6 +62,7 @@ _SECTIONS = {
     "keep": "How much is kept. Only jobs that are over are ever removed, the oldest first.",
     "planning": "Limits of the worker process that plans, and how it reads a page.",
     "sheet": "Where on the sheet a picture is drawn, in mm inwards from the corner where the origin lies.",
+    "pens": "Pens of several colours, drawn one after the other.",
     "scanner": "The scanner: which one, how it scans, and which button of its is heard.",
     "button": "A button beside the machine: a key of a keyboard or foot switch, or a button at a pin of the board.",
 }

@@ -7,6 +7,7 @@ from daemon.config.load import DEFAULT_MACHINE, Options, Settings, load_settings
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine, DobotMachine, EmcoMachine, GrblMachine, Machine
 from daemon.config.paths import Paths
 from daemon.config.pen import PenSettings, ServoPenSettings, ZPenSettings
+from daemon.config.pens import Pens
 from daemon.config.scanner import Scanner
 from daemon.config.section import Section
 from daemon.config.sheet import Intake, Keep, Planning, Sheet
@@ -25,6 +26,7 @@ __all__ = [
     "Options",
     "Paths",
     "PenSettings",
+    "Pens",
     "Planning",
     "Scanner",
     "Section",

@@ -15,6 +15,7 @@ from daemon.config.button import Button
 from daemon.config.explain import explain
 from daemon.config.machine import SIMULATED_GRBL, AnyMachine
 from daemon.config.paths import Paths, paths_of
+from daemon.config.pens import Pens
 from daemon.config.scanner import Scanner
 from daemon.config.section import Section
 from daemon.config.several import check_inboxes, check_ways
@@ -34,6 +35,7 @@ class Settings(Section):
     keep: Keep = Keep()
     planning: Planning = Planning()
     sheet: Sheet = Sheet()
+    pens: Pens = Pens()
     scanner: Scanner = Scanner(kind="none")
     button: Button = Button(kind="none")
     machines: dict[Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$")], AnyMachine]
