@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import math
 import os
 import stat
 import struct
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,18 +21,23 @@ from daemon.errors import BadPicture
 from daemon.intake.header import Header, read_header
 from daemon.intake.pages import checked_page
 from daemon.intake.tags import is_tiff, page_directories, with_first
-from daemon.intake.tone import to_grey
-from daemon.shapes import Grey, PageImage
+from daemon.intake.tone import darkened, to_colours, to_grey
+from daemon.shapes import Colours, Grey, PageImage
 
 _MOST_BYTES_PER_PX = 16
 _MOST_OVERHEAD_BYTES = 64_000_000
+_COLOUR_PX = 4_000_000
+"""Colours are kept of so many pixels at most: pens are told apart by far less than the page's lines."""
 
 
-def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "", page: int = 1) -> PageImage:
+def decode(
+    path: Path, *, max_megapixels: float = 100.0, name: str = "", page: int = 1, in_colour: bool = False
+) -> PageImage:
     """Reads a PNG, JPEG, TIFF (one of its pages, from 1 on), BMP, WebP or PNM file; its name and extension say nothing.
 
     The size is read from the header and checked before anything is decoded. The page is upright as EXIF says, alpha
-    lies over white, every depth becomes 8 bits. name: what people call the file, if not by its path. Raises BadPicture
+    lies over white, every depth becomes 8 bits. name: what people call the file, if not by its path. in_colour: the
+    page keeps its colours, and what is coloured counts as ink however light it is. Raises BadPicture
     when the file cannot be opened (links and what is no regular file are not), is none of these, is greater than
     max_megapixels, damaged or cut short.
     """
@@ -38,8 +46,10 @@ def decode(path: Path, *, max_megapixels: float = 100.0, name: str = "", page: i
     sha256 = hashlib.sha256(data).hexdigest()
     data = _with_page_first(name, data, page)
     header = _checked_header(name, data, max_megapixels)
-    grey = _upright(_grey(_pixels(name, data, header), header), header.turned)
-    return page_of(grey, sha256=sha256, px_per_mm=header.px_per_mm)
+    pixels = _pixels(name, data, header, in_colour=in_colour)
+    grey = _upright(_toned(pixels, header, to_grey), header.turned)
+    found = page_of(grey, sha256=sha256, px_per_mm=header.px_per_mm)
+    return coloured(found, _upright(_toned(pixels, header, to_colours), header.turned)) if in_colour else found
 
 
 def page_of(grey: Grey, *, sha256: str, px_per_mm: float | None = None, warnings: tuple[str, ...] = ()) -> PageImage:
@@ -54,6 +64,13 @@ def page_of(grey: Grey, *, sha256: str, px_per_mm: float | None = None, warnings
         px_per_mm=px_per_mm,
         warnings=warnings,
     )
+
+
+def coloured(page: PageImage, colours: Colours) -> PageImage:
+    """The page with its colours, made smaller where they are many; what is coloured counts as ink on it."""
+    scale = min(1.0, math.sqrt(_COLOUR_PX * 3 / colours.size))
+    small = cv2.resize(colours, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) if scale < 1 else colours
+    return replace(page, grey=darkened(page.grey, colours), colour=np.asarray(small, np.uint8))
 
 
 def read_file(path: Path, name: str, *, most_bytes: int) -> bytes:
@@ -108,9 +125,10 @@ def _checked_header(name: str, data: bytes, max_megapixels: float) -> Header:
     return header
 
 
-def _pixels(name: str, data: bytes, header: Header) -> NDArray[Any]:
+def _pixels(name: str, data: bytes, header: Header, *, in_colour: bool) -> NDArray[Any]:
     # JPEG holds its luma apart: decoding that alone takes a third of the memory.
-    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION if header.kind == "JPEG" else cv2.IMREAD_UNCHANGED
+    jpeg = cv2.IMREAD_IGNORE_ORIENTATION | (cv2.IMREAD_COLOR if in_colour else cv2.IMREAD_GRAYSCALE)
+    flags = jpeg if header.kind == "JPEG" else cv2.IMREAD_UNCHANGED
     try:
         pixels = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
     except cv2.error as error:
@@ -124,17 +142,17 @@ def _damaged(name: str, header: Header) -> str:
     return f"{name} is a {header.kind} that is damaged, cut short or of a rare form: copy it again, or save it as PNG"
 
 
-def _grey(pixels: NDArray[Any], header: Header) -> Grey:
+def _toned(pixels: NDArray[Any], header: Header, tone: Callable[..., NDArray[np.uint8]]) -> NDArray[np.uint8]:
     # libtiff dims the colours of 8-bit TIFFs by their alpha and mends white-is-zero; it leaves deeper ones alone.
     shallow_tiff = header.kind == "TIFF" and pixels.dtype == np.uint8
-    grey = to_grey(pixels, white=header.white, premultiplied=shallow_tiff)
-    return 255 - grey if header.inverted and not shallow_tiff else grey
+    found = tone(pixels, white=header.white, premultiplied=shallow_tiff)
+    return 255 - found if header.inverted and not shallow_tiff else found
 
 
-def _upright(grey: Grey, turned: int) -> Grey:
+def _upright(grey: NDArray[np.uint8], turned: int) -> NDArray[np.uint8]:
     """Undo the camera's turn (EXIF 2.3, tag 274)."""
     if turned >= 5:
-        grey = grey.T
+        grey = grey.swapaxes(0, 1)
     if turned in (3, 4, 7, 8):
         grey = grey[::-1]
     if turned in (2, 3, 6, 7):

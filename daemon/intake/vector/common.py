@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.shapes import Grey, Points
+from daemon.colours import BLACK, Rgb
+from daemon.shapes import Colours, Grey, Points
 
 FLAT_MM = 0.01
 """A curve becomes chords that leave it by no more."""
@@ -24,6 +25,7 @@ _BEYOND_MM = 1e7
 class Vectors:
     """A page of lines. lines: each (N, 2) in mm, x to the right, y down, the page's upper left corner at (0, 0).
 
+    colours: of each line; empty where the file says none, which is black.
     sized: the file says how large it is; else its unit, or its whole width, is only taken for mm. warnings: what was
     left out or taken for granted, in plain words.
     """
@@ -33,15 +35,20 @@ class Vectors:
     height_mm: float
     sized: bool
     warnings: tuple[str, ...] = ()
+    colours: tuple[Rgb, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rendered:
-    """A page as it looks. grey: uint8 (H, W). px_per_mm: None where the file does not say it. warnings: as above."""
+    """A page as it looks. grey: uint8 (H, W). px_per_mm: None where the file does not say it. warnings: as above.
+
+    colour: where it was asked for.
+    """
 
     grey: Grey
     px_per_mm: float | None = None
     warnings: tuple[str, ...] = ()
+    colour: Colours | None = None
 
 
 @dataclass(slots=True)
@@ -49,13 +56,21 @@ class Collected:
     """Lines of a page that is being read, counted: raises ValueError when they hold too many points."""
 
     lines: list[Points] = field(default_factory=list)
+    colours: list[Rgb] = field(default_factory=list)
     points: int = 0
 
-    def add(self, line: Points) -> None:
+    def add(self, line: Points, colour: Rgb = BLACK) -> None:
         self.count(len(line))
         if not (np.abs(line) < _BEYOND_MM).all():
             raise ValueError("holds a number that is beyond every sheet: draw it anew at its own size")
         self.lines.append(line)
+        self.colours.append(colour)
+
+    def clip(self, high: tuple[float, float]) -> None:
+        """Keep the parts within the page, which begins at (0, 0)."""
+        parts = [clipped([line], (0.0, 0.0), high) for line in self.lines]
+        self.colours = [colour for some, colour in zip(parts, self.colours, strict=True) for _ in some]
+        self.lines = [part for some in parts for part in some]
 
     def count(self, points: int) -> None:
         self.points += points

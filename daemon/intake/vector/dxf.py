@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from daemon.colours import BLACK, Rgb
 from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size
 from daemon.shapes import Points
 
@@ -21,6 +22,8 @@ _END = re.compile(rb"\n\s*0\s*\n\s*EOF\s*$")
 MOST_ENTITIES = 100_000
 _MARGIN_MM = 1.0
 """A DXF file has no page: so much is left round its lines."""
+_WHITE = 7
+"""Of AutoCAD's colours; black on a light ground."""
 _MM = 4
 """Of $INSUNITS."""
 _FRAMES = ("IMAGE", "WIPEOUT", "VIEWPORT")
@@ -67,20 +70,35 @@ def _page_of(document: Any) -> Vectors:
     collected = Collected()
     for entity in _Shown(document, left_out).of(document.modelspace()):
         for points in _lines(entity, FLAT_MM / mm, left_out):
-            collected.add(points[:, :2] * mm)
+            collected.add(points[:, :2] * mm, _colour(entity, document))
     texts = sum(left_out.pop(kind, 0) for kind in _TEXTS)
     warnings += [f"{texts} texts are left out: turn them into lines where they shall be drawn"] if texts else []
     warnings += [f"{count} of the kind {kind} are left out" for kind, count in sorted(left_out.items())]
-    return _laid_out(collected.lines, warnings)
+    return _laid_out(collected.lines, collected.colours, warnings)
 
 
-def _laid_out(lines: list[Points], warnings: list[str]) -> Vectors:
+def _colour(entity: Any, document: Any) -> Rgb:
+    """Its own or that of its layer; what is drawn white on a dark screen is black on paper."""
+    from ezdxf.colors import BYBLOCK, BYLAYER, aci2rgb  # noqa: PLC0415 - an extra
+
+    index, rgb = entity.dxf.get("color", BYLAYER), entity.rgb
+    if rgb is None and index == BYLAYER:
+        name = entity.dxf.get("layer", "0")
+        layer = document.layers.get(name) if document.layers.has_entry(name) else None
+        index, rgb = (layer.color, layer.rgb) if layer else (_WHITE, None)
+    if rgb is None and abs(index) in (BYBLOCK, _WHITE):
+        return BLACK
+    red, green, blue = rgb or aci2rgb(abs(index))
+    return red, green, blue
+
+
+def _laid_out(lines: list[Points], colours: list[Rgb], warnings: list[str]) -> Vectors:
     """On a page as large as the lines, y downwards."""
     corners = [np.stack([line.min(axis=0), line.max(axis=0)]) for line in lines] or [np.zeros((2, 2))]
     low, high = np.min(corners, axis=(0, 1)) - _MARGIN_MM, np.max(corners, axis=(0, 1)) + _MARGIN_MM
     width_mm, height_mm = checked_size(*(high - low).tolist())
     placed = tuple((line - (low[0], high[1])) * (1, -1) for line in lines)
-    return Vectors(placed, width_mm, height_mm, True, tuple(warnings))
+    return Vectors(placed, width_mm, height_mm, True, tuple(warnings), tuple(colours))
 
 
 def _unit_mm(document: Any) -> tuple[float, list[str]]:

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from daemon.colours import BLACK, Rgb
 from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, chords_of_bezier, clipped
 from daemon.intake.vector.dashes import dashed
 from daemon.intake.vector.svg_units import Matrix
@@ -51,8 +52,9 @@ class Reading:
             return None
         for each in shown:
             self._path(each)
-        lines = clipped(self._collected.lines, (0.0, 0.0), size_mm)
-        return Vectors(tuple(lines), *size_mm, True, tuple(self._warnings()))
+        found = self._collected
+        found.clip(size_mm)
+        return Vectors(tuple(found.lines), *size_mm, True, tuple(self._warnings()), tuple(found.colours))
 
     def _warnings(self) -> Iterator[str]:
         if self._white:
@@ -85,8 +87,8 @@ class Reading:
     def _path(self, shown: _Shown) -> None:
         each, fill, line = shown.object, ctypes.c_int(), ctypes.c_int()
         self._c.FPDFPath_GetDrawMode(each, fill, line)
-        stroked = bool(line.value) and self._inked(each, self._c.FPDFPageObj_GetStrokeColor)
-        filled = bool(fill.value) and self._inked(each, self._c.FPDFPageObj_GetFillColor)
+        stroked = self._inked(each, self._c.FPDFPageObj_GetStrokeColor) if line.value else ()
+        filled = self._inked(each, self._c.FPDFPageObj_GetFillColor) if fill.value else ()
         if not stroked and not filled:
             self._white += bool(line.value or fill.value)
             return
@@ -95,14 +97,15 @@ class Reading:
         dashes = [] if filled else [length * scale for length in self._dashes(each)]
         lines = [part for run in self._runs(each, own_to_mm, close=not stroked) for part in dashed(run, dashes)]
         for part in clipped(lines, *self._clip(shown)):
-            self._collected.add(part)
+            self._collected.add(part, (stroked or filled)[0])
 
-    def _inked(self, each: Any, colour_of: Callable[..., int]) -> bool:
-        """Its colour is seen on white paper; one that is not told is taken for ink."""
+    def _inked(self, each: Any, colour_of: Callable[..., int]) -> tuple[Rgb, ...]:
+        """Its colour where that is seen on white paper; one that is not told is taken for black ink."""
         red, green, blue, opacity = (ctypes.c_uint() for _ in range(4))
         if not colour_of(each, red, green, blue, opacity):
-            return True
-        return opacity.value >= _SEEN_FROM and min(red.value, green.value, blue.value) < _WHITE_FROM
+            return (BLACK,)
+        colour = red.value, green.value, blue.value
+        return (colour,) if opacity.value >= _SEEN_FROM and min(colour) < _WHITE_FROM else ()
 
     def _dashes(self, each: Any) -> list[float]:
         count = self._c.FPDFPageObj_GetDashCount(each)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from daemon.colours import ONE_PEN, Pens
 from daemon.intake.vector.common import Vectors
 from daemon.intake.vector.overlaps import drawn_once
 from daemon.shapes import Drawing, Edge, Grey, LineGraph, PageImage, Points, Stroke
@@ -32,16 +33,18 @@ class VectorPage:
     graph: LineGraph
 
 
-def as_page(vectors: Vectors, *, sha256: str) -> VectorPage:
+def as_page(vectors: Vectors, *, sha256: str, pens: Pens = ONE_PEN) -> VectorPage:
     """The page of these lines, inked before overlapping lines are taken off, so that a lost line shows.
 
-    The page has px_per_mm where the file says how large it is. sha256: of the file.
+    The page has px_per_mm where the file says how large it is. sha256: of the file. pens: each line is drawn with the
+    one whose colour is nearest to its own; what a pen that is left out would draw is not on the page either.
     """
+    by_pen = pens.sorted(vectors.lines, vectors.colours)
     scale = _px_per_mm(vectors)
     width_px, height_px = (max(1, math.ceil(side * scale)) for side in (vectors.width_mm, vectors.height_mm))
     stated = scale if vectors.sized else None
     page = PageImage(
-        grey=_inked([line * scale - 0.5 for line in vectors.lines], width_px, height_px),
+        grey=_inked([line * scale - 0.5 for lines in by_pen.values() for line in lines], width_px, height_px),
         to_given=np.eye(3),
         given_width_px=width_px,
         given_height_px=height_px,
@@ -50,7 +53,7 @@ def as_page(vectors: Vectors, *, sha256: str) -> VectorPage:
         px_per_mm=stated,
         warnings=vectors.warnings,
     )
-    strokes = tuple(Stroke(line * scale - 0.5) for line in drawn_once(vectors.lines))
+    strokes = tuple(Stroke(line * scale - 0.5, pen) for pen, lines in by_pen.items() for line in drawn_once(lines))
     return VectorPage(page, Drawing(strokes, width_px, height_px, stated), _graph(strokes))
 
 

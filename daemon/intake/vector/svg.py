@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size, chords_of_bezier, clipped
+from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size, chords_of_bezier
 from daemon.intake.vector.dashes import dashed
 from daemon.intake.vector.svg_path import Run, runs_of_path, runs_of_shape
-from daemon.intake.vector.svg_style import Sheets, filled, painted, sheets_of, shown, stroked, visible
+from daemon.intake.vector.svg_style import Sheets, colour_of, filled, painted, sheets_of, shown, stroked, visible
 from daemon.intake.vector.svg_tree import MOST_ELEMENTS, Element, read_tree
 from daemon.intake.vector.svg_units import Matrix, Room, length, lengths, room_of, transform
 from daemon.shapes import Points
@@ -50,8 +50,10 @@ def read_svg(data: bytes) -> Vectors:
     # Numbers may be too large to be reckoned with: what comes of them is looked at when it is collected.
     with np.errstate(all="ignore"):
         walk.children(root, _State(room.to_mm, sheets.style_of(root, {}), (room.width, room.height)))
-    lines = clipped(walk.collected.lines, (0.0, 0.0), (room.width_mm, room.height_mm))
-    return Vectors(tuple(lines), room.width_mm, room.height_mm, room.sized, tuple(walk.warnings()))
+    found = walk.collected
+    found.clip((room.width_mm, room.height_mm))
+    warnings = tuple(walk.warnings())
+    return Vectors(tuple(found.lines), room.width_mm, room.height_mm, room.sized, warnings, tuple(found.colours))
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +141,7 @@ class _Walk:
                 run.close()
             flat = _flat(run, state.to_mm)
             for part in dashed(flat, dashes) if line and not area else [flat]:
-                self.collected.add(part)
+                self.collected.add(part, colour_of(state.style, "stroke" if line else "fill"))
 
     def _runs(self, element: Element, state: _State) -> list[Run]:
         attributes = element.attributes

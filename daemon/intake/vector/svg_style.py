@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Literal
 
+from daemon.colours import BLACK, Rgb, rgb_of
 from daemon.intake.vector.svg_tree import Element
 
 _RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
@@ -16,6 +18,7 @@ _OWN = ("display", "opacity", "clip-path", "mask", "marker-start", "marker-mid",
 _SEEN_FROM = 0.02
 """Opacity."""
 _WHITE_FROM = 250
+_NEARLY_WHITE = ("ivory", "floralwhite", "ghostwhite", "mintcream", "azure")
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +101,17 @@ def painted(style: dict[str, str]) -> bool:
     return {style.get("stroke", "none"), style.get("fill", "black")} - {"none", "transparent"} != set()
 
 
+def colour_of(style: dict[str, str], what: Literal["stroke", "fill"]) -> Rgb:
+    """Of its line or its area; black where a pattern or a colour that is not read paints it."""
+    return rgb_of(_paint(style.get(what, "black"), style)) or BLACK
+
+
+def _paint(paint: str, style: dict[str, str]) -> str:
+    return style.get("color", "black") if paint.lower() == "currentcolor" else paint
+
+
 def _inked(paint: str, opacity: str, style: dict[str, str]) -> bool:
-    if paint.lower() == "currentcolor":
-        paint = style.get("color", "black")
+    paint = _paint(paint, style)
     return paint.lower() not in ("none", "transparent") and _opacity(opacity) >= _SEEN_FROM and not _white(paint)
 
 
@@ -112,12 +123,5 @@ def _opacity(text: str) -> float:
 
 
 def _white(paint: str) -> bool:
-    plain = paint.lower().strip()
-    if found := re.fullmatch(r"#([0-9a-f]{3}|[0-9a-f]{6})", plain):
-        digits = found[1] if len(found[1]) == 6 else "".join(2 * digit for digit in found[1])
-        return min(bytes.fromhex(digits)) >= _WHITE_FROM
-    if found := re.fullmatch(r"rgba?\(([^)]*)\)", plain):
-        parts = re.findall(r"[\d.]+%?", found[1])[:3]
-        levels = [float(part.rstrip("%")) * (2.55 if part.endswith("%") else 1) for part in parts]
-        return len(levels) == 3 and min(levels) >= _WHITE_FROM
-    return plain in ("white", "snow", "ivory", "floralwhite", "ghostwhite", "mintcream", "azure")
+    colour = rgb_of(paint)
+    return (colour is not None and min(colour) >= _WHITE_FROM) or paint.lower().strip() in _NEARLY_WHITE
