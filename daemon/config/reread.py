@@ -15,6 +15,7 @@ AT_ONCE: Mapping[str, str] = {
     "planning.network": "the next picture that is planned",
     "planning.fill": "the next picture that is planned",
     "planning.hatch_*": "the next picture that is planned",
+    "planning.merge": "the next picture that is planned",
     "planning.explain": "the next picture that is planned",
     "machines.*.draw_mm_s": "the next picture that is planned",
     "machines.*.resolution_mm": "the next picture that is planned",

@@ -67,6 +67,8 @@ class Planning(Section):
     """How its lines rise to the right, as the picture is seen."""
     hatch_cross: bool = False
     """Crosses it by a second one at a right angle."""
+    merge: bool = True
+    """A line that was drawn over itself is drawn once, in the middle of its passes."""
     explain: bool = False
     """Writes into explain.json why each line is drawn as it is."""
 

@@ -10,6 +10,7 @@ from daemon.page.fills import Fill, hollow
 from daemon.page.hatch import Hatch
 from daemon.page.light import even_light, flatten_light, spread_tones
 from daemon.page.line_width import fit_line_width
+from daemon.page.overdrawn import merge_overdrawn
 from daemon.page.photograph import warned_of_photograph
 from daemon.page.ruling import take_off_ruling
 from daemon.page.sheet import straighten
@@ -35,12 +36,13 @@ def put_right(page: PageImage) -> PageImage:
     return clean_paper(spread_tones(warned_of_contrast(bare)))
 
 
-def fit(page: PageImage, *, fill: Fill = "outline") -> PageImage:
+def fit(page: PageImage, *, fill: Fill = "outline", merge: bool = True) -> PageImage:
     """The page put right at the scale at which it is read, its line width known, with what there is to warn of.
 
     fill: what becomes of areas that are wider than any line; a hatch's spacing is in px of the page given here.
+    merge: whether the passes of a line that was drawn over itself become one line.
     """
-    fitted = fit_line_width(page)
+    fitted = fit_line_width(merge_overdrawn(page) if merge else page)
     if isinstance(fill, Hatch):
         fill = replace(fill, spacing_px=fill.spacing_px * fitted.grey.shape[1] / page.grey.shape[1])
     return hollow(warned_of_size(fitted), fill=fill)
