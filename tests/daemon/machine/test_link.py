@@ -28,10 +28,26 @@ class Unattended(SimulatedTransport):
 
     clogged = False
 
+    def __init__(self, simulator: GrblSimulator) -> None:
+        super().__init__(simulator)
+        self.held_s: list[float] = []
+        """When it was told to hold."""
+        self.later: tuple[float, Callable[[], None]] = (float("inf"), lambda: None)
+        """What another thread does at a moment, while this one waits."""
+
     def write(self, data: bytes) -> None:
+        if b"!" in data:
+            self.held_s.append(self.now())
         if self.clogged:
             raise MachineFault("takes no more bytes")
         super().write(data)
+
+    def _pass_until(self, moment: float | None) -> None:
+        at_s, act = self.later
+        if at_s <= (moment or 0.0):
+            self._now, self.later = max(self._now, at_s), (float("inf"), lambda: None)
+            return act()
+        return super()._pass_until(moment)
 
     def pass_s(self, seconds: float) -> None:
         self._now += seconds
@@ -115,6 +131,16 @@ def test_a_stop_from_another_thread_ends_the_job_with_the_pen_up() -> None:
     ended = table.link.draw(PROGRAM)
     assert (ended.verdict, ended.pen_lifted) == (Verdict.STOPPED, True)
     assert table.simulator.position_mm[2] == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("after_s", [0.05, 0.3, 0.777, 1.5, 3.0])
+def test_a_stop_holds_the_machine_within_a_tenth_of_a_second_on_its_own_clock(after_s: float) -> None:
+    table = Table()
+    table.link.connect()
+    asked_s = table.transport.now() + after_s
+    table.transport.later = (asked_s, table.link.stop)
+    assert table.link.draw(PROGRAM).verdict is Verdict.STOPPED
+    assert 0 <= table.transport.held_s[0] - asked_s <= 0.1
 
 
 def test_a_stop_asked_for_before_the_job_is_obeyed_and_then_forgotten() -> None:
