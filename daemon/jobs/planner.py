@@ -31,10 +31,12 @@ from daemon.jobs.arrival import page_in
 from daemon.jobs.correction import told
 from daemon.jobs.devices import program_of, times_of
 from daemon.jobs.folder import source_of, write_all_durably, write_durably
+from daemon.jobs.pens import pens_of
 from daemon.jobs.pictures import strokes_s, write_pictures
 from daemon.jobs.sheet import box_origin_mm, reach_low_mm, reach_mm
 from daemon.jobs.wishes import settings_for
 from daemon.page.back import given_px
+from daemon.page.colours import by_pen
 from daemon.page.fills import Fill
 from daemon.page.hatch import Hatch
 from daemon.page.prepare import fit, put_right
@@ -42,7 +44,18 @@ from daemon.program.file import program_text
 from daemon.report.fidelity import Fidelity, fidelity
 from daemon.report.preview_html import Told
 from daemon.report.report import executed_report, from_json, planned_report, to_json
-from daemon.shapes import Affine, Drawing, Homography, LineGraph, PageImage, Points, Segmentation, Stroke, Toolpath
+from daemon.shapes import (
+    Affine,
+    Drawing,
+    Homography,
+    LineGraph,
+    NamedPen,
+    PageImage,
+    Points,
+    Segmentation,
+    Stroke,
+    Toolpath,
+)
 from daemon.toolpath.place import Layout, invert, place, placement
 from daemon.toolpath.plan import Precision, plan_toolpath
 from daemon.vision.segmenter import Segmenter
@@ -156,7 +169,8 @@ def segmenter(network: str, threads: int) -> Segmenter:
 
 
 def _opened(source: Path, folder: Path, settings: Settings, name: str) -> PageImage | VectorPage:
-    return open_picture(source, max_megapixels=settings.intake.max_megapixels, name=name, page=page_in(folder))
+    most, page = settings.intake.max_megapixels, page_in(folder)
+    return open_picture(source, max_megapixels=most, name=name, page=page, pens=pens_of(settings.pens))
 
 
 def _known(given: VectorPage) -> Understood:
@@ -168,12 +182,12 @@ def _known(given: VectorPage) -> Understood:
 def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages, *, sized: bool) -> Understood:
     with stages("page"):
         readable = put_right(given)
-        page = fit(readable, fill=_fill(readable, settings, sized=sized), merge=settings.planning.merge)
+        page = fit(readable, fill=_fill(readable, settings, sized=sized))
     with stages("vision"):
         segmentation = segmenter(settings.planning.network, settings.planning.threads).segment(page)
     with stages("graph"):
         graph = _graph(page, segmentation, folder, settings)
-        on_page = _strokes(graph, page, settings)
+        on_page = by_pen(_strokes(graph, page, settings), page, graph.vertices, pens_of(settings.pens))
         drawing, upright = drawing_on_given(on_page, page), drawing_on_readable(on_page, page, readable)
     return Understood(readable, page, segmentation, graph, on_page, upright, drawing)
 
@@ -241,7 +255,7 @@ def _toolpath(seen: Understood, settings: Settings, machine: Machine, *, sized: 
     sheet = settings.sheet
     # Only where lines were seen in pixels do these limit how exactly they are known.
     error_px = np.inf if seen.segmentation is None else _ERROR_PX * given_px(seen.page) / given_px(seen.readable)
-    return plan_toolpath(
+    toolpath = plan_toolpath(
         seen.upright,
         layout=_layout(seen.page, settings, machine, sized=sized),
         precision=Precision(sheet.error_mm, error_px, machine.resolution_mm, _curve_mm(settings, machine)),
@@ -251,6 +265,7 @@ def _toolpath(seen: Understood, settings: Settings, machine: Machine, *, sized: 
         reach_low_mm=reach_low_mm(sheet, machine),
         rejoin=settings.planning.graph != "paper",
     )
+    return replace(toolpath, pens=tuple(NamedPen(*pen) for pen in settings.pens.colours.items()))
 
 
 def _curve_mm(settings: Settings, machine: Machine) -> float:
