@@ -138,7 +138,9 @@ def _counted_s(folder: Path, changed_s: float) -> float:
 
 
 def _bytes_in(folder: Path) -> int:
+    """Of a file that several jobs share, as pages of one document do, each has its part."""
     try:
-        return sum(path.lstat().st_size for path in folder.iterdir())
+        found = [path.lstat() for path in folder.iterdir()]
     except OSError:
         return 0
+    return sum(file.st_size // file.st_nlink for file in found)

@@ -6,9 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from daemon.config import Keep
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in, keep_page, page_in
 from daemon.jobs.choices import Choices
 from daemon.jobs.folder import source_of
+from daemon.jobs.retention import Retention
+from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME
 from tests.daemon.jobs.intake_bench import Cuts, Intake
 from tests.daemon.jobs.test_folder import drop
@@ -69,6 +72,17 @@ def test_no_cut_loses_or_doubles_a_page(tmp_path: Path, cuts: Cuts, said: bytes)
         intake.journal.close()
 
     cuts.everywhere(tmp_path, lambda root: book_in(root, said), take, after_the_cut, changes=range(24, 500))
+
+
+def test_the_one_file_counts_once_for_what_is_kept(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, pages=PAGES)
+    (intake.inbox / "plan.pdf").write_bytes(bytes(3_000_000))
+    take(intake)
+    for job in intake.journal.jobs():
+        for state in (State.PLANNING, State.PLANNED, State.DRAWING, State.DONE):
+            intake.desk.step(job.id, state)
+    Retention(intake.desk, Keep(jobs_mb=4)).turn()
+    assert len(list(intake.folders.root.iterdir())) == PAGES
 
 
 def test_where_no_links_can_be_made_the_file_is_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
