@@ -182,7 +182,7 @@ def _known(given: VectorPage) -> Understood:
 def _read(given: PageImage, folder: Path, settings: Settings, stages: Stages, *, sized: bool) -> Understood:
     with stages("page"):
         readable = put_right(given)
-        page = fit(readable, fill=_fill(readable, settings, sized=sized))
+        page = fit(readable, fill=_fill(readable, settings, sized=sized), merge=settings.planning.merge)
     with stages("vision"):
         segmentation = segmenter(settings.planning.network, settings.planning.threads).segment(page)
     with stages("graph"):
