@@ -13,7 +13,7 @@ from daemon.intake.rank import Order
 from tests.daemon.intake.test_inbox import SETTLE_S, Desk
 
 LATER_S = 3 * SETTLE_S
-MANY = 400
+MANY, WAITING = 400, 10_000
 """Enough to tell looking at each from looking at all for each."""
 
 
@@ -55,16 +55,16 @@ def test_pictures_that_arrive_one_by_one_are_each_looked_at_a_few_times(desk: De
     assert inbox.looks <= 6 * MANY
 
 
-def test_many_pictures_that_wait_are_claimed_in_steps_that_a_stop_need_not_wait_for(desk: Desk) -> None:
+def test_ten_thousand_pictures_that_wait_are_claimed_in_steps_that_a_stop_need_not_wait_for(desk: Desk) -> None:
     inbox = counted(desk)
-    for number in range(MANY):
+    for number in range(WAITING):
         desk.drop(f"{number}.png", "")
     inbox.step(0.0)
     inbox.step(LATER_S, everything=False)
     assert len(desk.taken) == AT_ONCE
     claim_all(desk, LATER_S)
-    assert len(desk.taken) == MANY
-    assert inbox.looks <= 6 * MANY
+    assert len(desk.taken) == WAITING
+    assert inbox.looks <= 6 * WAITING
 
 
 @pytest.mark.parametrize(
