@@ -39,7 +39,7 @@ check: $(VENV)/test $(VENV)/check $(VENV)/deb ## Form, lint, types, import contr
 	$(BIN)/ruff format --check $(CODE)
 	$(BIN)/ruff check $(CODE)
 	$(BIN)/mypy
-	cd systemd/debian && $(CURDIR)/$(BIN)/mypy --strict .
+	cd systemd/debian && MYPYPATH=$(CURDIR) $(CURDIR)/$(BIN)/mypy --strict --follow-imports silent .
 	$(BIN)/lint-imports
 	$(BIN)/python -m pytest tests/daemon tests/firmware_protocol
 

@@ -32,7 +32,7 @@ def main(arguments: list[str] | None = None) -> int:
     os.environ["ORT_DISABLE_TELEMETRY"] = "1"
     arguments = sys.argv[1:] if arguments is None else arguments
     # What happens to a simulated machine that moves has to happen now: it waits for no other command to be loaded.
-    parser = _event_parser() if arguments[:2] == ["simulate", "ctl"] else _parser()
+    parser = _event_parser() if arguments[:2] == ["simulate", "ctl"] else whole_parser()
     args = parser.parse_args(arguments)
     try:
         return int(args.run(args))
@@ -47,14 +47,8 @@ def main(arguments: list[str] | None = None) -> int:
         return 130
 
 
-def _event_parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="linedrawd")
-    machines = parser.add_subparsers().add_parser("simulate").add_subparsers()
-    simulate_ctl.add_parser(machines)
-    return parser
-
-
-def _parser() -> argparse.ArgumentParser:
+def whole_parser() -> argparse.ArgumentParser:
+    """Every command with its words; --help and the page of the manual are made of it."""
     from daemon.cli import (  # noqa: PLC0415
         calibrate,
         control,
@@ -109,6 +103,13 @@ def _parser() -> argparse.ArgumentParser:
         replay,
     ):
         group.add_parser(subparsers)
+    return parser
+
+
+def _event_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="linedrawd")
+    machines = parser.add_subparsers().add_parser("simulate").add_subparsers()
+    simulate_ctl.add_parser(machines)
     return parser
 
 

@@ -1,4 +1,4 @@
-"""Build dist/linedrawd_VERSION_ARCH.deb: wheels for the Pythons of Debian 12 and 13, and every file in its place."""
+"""Build dist/linedrawd_VERSION_ARCH.deb: parts for the Pythons of Debian 12 and 13, and every file in its place."""
 
 from __future__ import annotations
 
@@ -6,17 +6,23 @@ import argparse
 import gzip
 import hashlib
 import os
+import re
 import shutil
 import subprocess
+import sys
+import tarfile
+import tempfile
 import time
-from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
+from datetime import UTC, datetime
 from email.utils import formatdate
-from functools import partial
 from pathlib import Path
 
+import man
 from papers import copyright_of, sbom, texts
-from wheels import PLATFORMS, Part, differences, fetch, own_wheel, repack
+from wheels import PLATFORMS, Part, fetch, own_wheel, unpack
+
+from daemon.cli.__main__ import whole_parser
 
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).parent
@@ -31,64 +37,92 @@ PLACES = {
     "systemd/linedrawd.logrotate": "etc/logrotate.d/linedrawd",
     "systemd/linedrawd.toml": "etc/linedrawd/linedrawd.toml",
     "systemd/debian/environment": "usr/lib/linedrawd/environment",
+    "systemd/debian/lintian-overrides": "usr/share/lintian/overrides/linedrawd",
     "tests/drawings/house.png": "usr/share/doc/linedrawd/examples/house.png",
     "systemd/drop-ins": "usr/share/doc/linedrawd/examples/drop-ins",
 }
 SCRIPTS = ("postinst", "prerm", "postrm")
 MB = 1e6
+INSTALLED_AT_MOST_MB = {"arm64": 190.0}
+"""The bar of the whole package with its virtual environment."""
 
 
 def main() -> None:
     """Build what the command line asks for, and print how large each part is."""
     args = _parser().parse_args()
-    work = ROOT / "build" / "deb"
-    work.mkdir(parents=True, exist_ok=True)
     args.out.mkdir(parents=True, exist_ok=True)
-    own = own_wheel(ROOT, work)
-    shutil.copy(own, args.out)
     os.environ.setdefault("SOURCE_DATE_EPOCH", str(_last_change_s()))
-    for arch in args.arch:
-        parts = [repack(own, _emptied(work / f"own-{arch}"), small=False), *_parts(own, arch, args, work)]
-        package(parts, arch, args.out, work / f"linedrawd-{arch}")
-        shutil.rmtree(work / f"own-{arch}")
+    (ROOT / "build").mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="deb-", dir=ROOT / "build") as folder:
+        work = Path(folder)
+        own = own_wheel(ROOT, work)
+        shutil.copy(own, args.out)
+        for arch in args.arch:
+            parts = [unpack(own, work / f"parts-{arch}"), *_parts(own, arch, args, work)]
+            package(parts, work / f"parts-{arch}", arch, args)
 
 
-def package(parts: list[Part], arch: str, out: Path, tree: Path) -> Path:
-    """Lay all files out below tree, and make the package of them."""
-    _emptied(tree)
+def package(parts: list[Part], unpacked: Path, arch: str, args: argparse.Namespace) -> Path:
+    """Lay all files out, and make the package of them. Raises ValueError where it is larger than its bar."""
+    tree = _emptied(unpacked.parent / f"linedrawd-{arch}")
     version = parts[0].version
     for source, place in PLACES.items():
         _install(ROOT / source, tree / place)
-    wheels = _emptied(tree / "usr/lib/linedrawd/wheels")
-    for part in parts:
-        shutil.copy(part.path, wheels)
-    content = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(wheels.iterdir()))).hexdigest()
-    (tree / "usr/lib/linedrawd/version").write_text(f"{version} {content[:16]}\n")
+    library = tree / "usr/lib/linedrawd"
+    _install(unpacked / "common", library / "common")
+    _squeeze(unpacked, library / "bound.tar.xz", small=args.small)
+    (library / "pythons").write_text(" ".join(f"python{python}" for python in args.python) + "\n")
+    content = hashlib.sha256(b"".join(_digest(path) for path in _files(unpacked))).hexdigest()
+    (library / "version").write_text(f"{version} {content[:16]}\n")
     (tree / "usr/bin").mkdir(parents=True)
     (tree / "usr/bin/linedrawd").symlink_to("/opt/linedrawd/bin/linedrawd")
     _write_papers(parts, version, arch, tree / "usr/share/doc/linedrawd")
-    _write_control(version, arch, tree, unpacked=max(_unpacked(parts).values()))
-    file = out / f"linedrawd_{version}_{arch}.deb"
-    # The wheels are squeezed already.
-    subprocess.run(["dpkg-deb", "-Zgzip", "-z1", "--root-owner-group", "--build", tree, file], check=True)
-    _print_sizes(parts, file, tree)
+    _write_manual(version, tree / "usr/share/man")
+    made = max(_size(folder) + _bytecode(unpacked, folder) for folder in unpacked.glob("python*"))
+    _write_control(version, arch, tree, made=made)
+    file: Path = args.out / f"linedrawd_{version}_{arch}.deb"
+    squeezed = ["-Zxz"] if args.small else ["-Zgzip", "-z1"]
+    subprocess.run(["dpkg-deb", *squeezed, "--root-owner-group", "--build", tree, file], check=True)
+    _print_sizes(parts, file, tree, made)
+    installed_mb = (_size(tree) + made) / MB
+    if args.small and installed_mb > INSTALLED_AT_MOST_MB.get(arch, installed_mb):
+        raise ValueError(
+            f"{file.name} takes {installed_mb:.0f} MB, at most {INSTALLED_AT_MOST_MB[arch]:g}: leave more out"
+        )
     return file
 
 
 def _parts(own: Path, arch: str, args: argparse.Namespace, work: Path) -> list[Part]:
-    """Fetched and written anew, each wheel once where it serves several Pythons. Nothing is squeezed twice."""
+    """Fetched and unpacked, each wheel once where it serves several Pythons."""
     fetched: dict[str, Path] = {}
     for python in args.python:
         for path in fetch(own, arch, python, ROOT / "constraints.txt", _emptied(work / f"fetched-{arch}-{python}")):
             fetched.setdefault(path.name, path)
-    folder = work / f"packed-{arch}-{'small' if args.small else 'quick'}"
-    _emptied(folder)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        parts = list(pool.map(partial(repack, folder=folder, small=args.small), fetched.values()))
-    for part in parts:
-        if differences(part.path):
-            raise ValueError(f"{part.path.name} and its RECORD disagree: {differences(part.path)}")
-    return sorted(parts, key=lambda part: part.path.name)
+    return [unpack(fetched[name], work / f"parts-{arch}") for name in sorted(fetched)]
+
+
+def _squeeze(unpacked: Path, file: Path, *, small: bool) -> None:
+    """What is bound to one Python. Files of the same name lie side by side: they are alike, and squeezed as one."""
+    bound = [path for folder in unpacked.glob("python*") for path in _files(folder)]
+    with tarfile.open(file, "w:xz", preset=8 if small else 0) as packed:
+        for path in sorted(bound, key=lambda path: (path.name.split(".")[0], path.stat().st_size, path)):
+            packed.add(path, path.relative_to(unpacked), filter=_plain)
+
+
+def _plain(member: tarfile.TarInfo) -> tarfile.TarInfo:
+    member.uid = member.gid = 0
+    member.uname = member.gname = "root"
+    member.mode, member.mtime = 0o644, _epoch_s()
+    return member
+
+
+def _bytecode(unpacked: Path, bound: Path) -> int:
+    """Bytes of it, about: compiled by the Python that builds, all but what a board does not compile either."""
+    cache = _emptied(unpacked.parent / "bytecode")
+    seldom = re.findall(r"^seldom='(.*)'$", (HERE / "environment").read_text(encoding="utf-8"), re.MULTILINE)[0]
+    compiler = [sys.executable, "-X", f"pycache_prefix={cache}", "-m", "compileall", "-q", "-x", seldom]
+    subprocess.run([*compiler, unpacked / "common", bound], check=False)
+    return _size(cache)
 
 
 def _write_papers(parts: list[Part], version: str, arch: str, doc: Path) -> None:
@@ -104,21 +138,34 @@ def _write_papers(parts: list[Part], version: str, arch: str, doc: Path) -> None
     (doc / "sbom.cdx.json").write_text(sbom(others, version=version, arch=arch), encoding="utf-8")
     for page in (ROOT / "docs").rglob("*.md"):
         _install(page, doc / page.relative_to(ROOT / "docs"))
-    date = formatdate(int(os.environ["SOURCE_DATE_EPOCH"]), localtime=False)
+    date = formatdate(_epoch_s(), localtime=False)
     said = f"linedrawd ({version}) stable; urgency=medium\n\n  * See CHANGELOG.md.\n\n -- {MAINTAINER}  {date}\n"
-    (doc / "changelog.gz").write_bytes(gzip.compress(said.encode(), 9, mtime=0))
+    _write_gzip(said, doc / "changelog.gz")
     _install(ROOT / "CHANGELOG.md", doc / "CHANGELOG.md")
 
 
-def _write_control(version: str, arch: str, tree: Path, *, unpacked: int) -> None:
-    """Installed-Size holds the virtual environment too, which dpkg does not see."""
+def _write_manual(version: str, manual: Path) -> None:
+    date = f"{datetime.fromtimestamp(_epoch_s(), UTC):%Y-%m-%d}"
+    os.environ["COLUMNS"] = "80"
+    _write_gzip(man.commands(whole_parser(), version=version, date=date), manual / "man1/linedrawd.1.gz")
+    text = (ROOT / "systemd/linedrawd.toml").read_text(encoding="utf-8")
+    _write_gzip(man.settings(text, version=version, date=date), manual / "man5/linedrawd.toml.5.gz")
+
+
+def _write_gzip(text: str, place: Path) -> None:
+    place.parent.mkdir(parents=True, exist_ok=True)
+    place.write_bytes(gzip.compress(text.encode(), 9, mtime=0))
+
+
+def _write_control(version: str, arch: str, tree: Path, *, made: int) -> None:
+    """Installed-Size holds what is made in /opt too, which dpkg does not see."""
     control = tree / "DEBIAN"
     control.mkdir()
     said = {
         "@VERSION@": version,
         "@ARCH@": arch,
         "@MAINTAINER@": MAINTAINER,
-        "@SIZE_KB@": str((_size(tree) + unpacked) // 1024),
+        "@SIZE_KB@": str((_size(tree) + made) // 1024),
     }
     text = (HERE / "control").read_text(encoding="utf-8")
     for word, value in said.items():
@@ -134,24 +181,17 @@ def _write_control(version: str, arch: str, tree: Path, *, unpacked: int) -> Non
     (control / "md5sums").chmod(0o644)
 
 
-def _print_sizes(parts: list[Part], file: Path, tree: Path) -> None:
+def _print_sizes(parts: list[Part], file: Path, tree: Path, made: int) -> None:
+    library = tree / "usr/lib/linedrawd"
     print(f"\n{file.name}: {file.stat().st_size / MB:.1f} MB; MB of each part:")
-    print(f"  {'':42}{'kept':>8}{'in /opt':>9}{'left out':>10}")
+    print(f"  {'':42}{'common':>8}{'bound':>8}{'left out':>10}")
     for part in parts:
-        name, kept = "-".join(part.path.name.split("-")[:3]), part.path.stat().st_size
-        print(f"  {name:42}{kept / MB:8.1f}{part.unpacked / MB:9.1f}{part.left_out / MB:10.1f}")
-    for python, size in _unpacked(parts).items():
-        print(f"  with Python {python}: {size / MB:.1f} in /opt/linedrawd and bytecode, {_size(tree) / MB:.1f} kept")
-    print(end="", flush=True)
-
-
-def _unpacked(parts: Iterable[Part]) -> dict[str, int]:
-    """Bytes of the virtual environment for each Python that there are wheels for."""
-    parts = list(parts)
-    tags = {python: f"-cp{python.replace('.', '')}-" for python in PYTHONS}
-    bound = {python: [part for part in parts if tag in part.path.name] for python, tag in tags.items()}
-    free = sum(part.unpacked for part in parts if not any(tag in part.path.name for tag in tags.values()))
-    return {python: free + sum(part.unpacked for part in own) for python, own in bound.items() if own}
+        name = "-".join(part.wheel.split("-")[:3])
+        print(f"  {name:42}{part.common / MB:8.1f}{part.bound / MB:8.1f}{part.left_out / MB:10.1f}")
+    common, bound, all_of_it = _size(library / "common"), _size(library / "bound.tar.xz"), _size(tree)
+    print(f"  installed: {common / MB:.1f} for every Python, {bound / MB:.1f} for one of them, squeezed,")
+    print(f"  {(all_of_it - common - bound) / MB:.1f} of papers and the rest, {made / MB:.1f} unpacked and bytecode:")
+    print(f"  {(all_of_it + made) / MB:.1f} MB in all", flush=True)
 
 
 def _install(source: Path, place: Path) -> None:
@@ -164,7 +204,11 @@ def _install(source: Path, place: Path) -> None:
 
 
 def _files(source: Path) -> Iterator[Path]:
-    return (path for path in source.rglob("*") if path.is_file()) if source.is_dir() else iter([source])
+    return (path for path in sorted(source.rglob("*")) if path.is_file()) if source.is_dir() else iter([source])
+
+
+def _digest(path: Path) -> bytes:
+    return hashlib.sha256(path.read_bytes()).digest()
 
 
 def _emptied(folder: Path) -> Path:
@@ -180,7 +224,12 @@ def _flat(path: str) -> str:
 
 
 def _size(tree: Path) -> int:
-    return sum(path.stat().st_size for path in tree.rglob("*") if path.is_file() and not path.is_symlink())
+    """Bytes of a file, or of all files below a folder."""
+    return sum(path.stat().st_size for path in _files(tree) if not path.is_symlink())
+
+
+def _epoch_s() -> int:
+    return int(os.environ["SOURCE_DATE_EPOCH"])
 
 
 def _last_change_s() -> int:
@@ -195,7 +244,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--python", nargs="+", choices=PYTHONS, default=list(PYTHONS))
     parser.add_argument("--out", type=Path, default=ROOT / "dist")
     parser.add_argument(
-        "--quick", dest="small", action="store_false", help="without LZMA: in seconds, a third larger; for tests"
+        "--quick",
+        dest="small",
+        action="store_false",
+        help="squeezed little: in seconds, half as large again; for tests",
     )
     return parser
 

@@ -20,13 +20,13 @@ _SAID_OTHERWISE = {
     "annotated-types": "MIT",
     "flatbuffers": "Apache-2.0",
     "onnxruntime": "MIT",
-    "opencv-python-headless": "Apache-2.0 AND LGPL-2.1-or-later",
+    "opencv-python-headless": "Apache-2.0",
     "protobuf": "BSD-3-Clause",
     "pyserial": "BSD-3-Clause",
     "pyusb": "BSD-3-Clause",
     "watchdog": "Apache-2.0",
 }
-"""Parts whose metadata has no licence in the words of SPDX. OpenCV's wheel holds FFmpeg, which is under the LGPL."""
+"""Parts whose metadata has no licence in the words of SPDX."""
 _HERE = Path(__file__).parent
 _TEXTS = {"pyserial": _HERE / "pyserial.LICENSE", "flatbuffers": Path("/usr/share/common-licenses/Apache-2.0")}
 """Of parts whose wheel holds no text of its licence."""
@@ -54,7 +54,7 @@ def copyright_of(parts: Iterable[Part], own: str) -> str:
         "Files: *\nCopyright: 2026 linedrawd contributors\nLicense: MIT",
     ]
     for part in parts:
-        files = f"usr/lib/linedrawd/wheels/{part.path.name.split('-')[0]}-*"
+        files = " ".join(f"*/{top}*" for top in sorted(part.tops))
         stanzas.append(f"Files: {files}\nCopyright: {author(part)}\nLicense: {part.name}")
     stanzas.append("License: MIT\n" + indented(own))
     for part in parts:
@@ -92,8 +92,8 @@ def _component(part: Part) -> Component:
         authors=[OrganizationalContact(name=author(part))],
         licenses=_licences(licence(part)),
         hashes=[HashType(alg=HashAlgorithm.SHA_256, content=part.sha256)],
-        purl=PackageURL("pypi", None, part.name.lower(), part.version, {"file_name": part.path.name}),
-        bom_ref=part.path.name,
+        purl=PackageURL("pypi", None, part.name.lower(), part.version, {"file_name": part.wheel}),
+        bom_ref=part.wheel,
     )
 
 

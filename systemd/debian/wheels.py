@@ -1,24 +1,25 @@
-"""The wheels of the package: fetched for the Python of a board, without what the daemon never loads."""
+"""The parts of the package: wheels fetched for the Python of a board, unpacked without what the daemon never loads."""
 
 from __future__ import annotations
 
-import base64
-import csv
 import hashlib
-import io
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
-from collections.abc import Iterable
 from dataclasses import dataclass
 from email.message import Message
 from email.parser import BytesParser
 from fnmatch import fnmatch
 from pathlib import Path
 
+import elf
+
 PLATFORMS = {"amd64": "x86_64", "arm64": "aarch64"}
 _MANYLINUX = ("manylinux_2_28", "manylinux_2_27", "manylinux_2_17", "manylinux2014")
+EXTRAS = ("gpio",)
+"""What the package holds of the extras of linedrawd's wheel."""
 DEAD = {
     # The same library once more: the module for Python has its own copy inside.
     "onnxruntime": (
@@ -41,20 +42,39 @@ DEAD = {
         "numpy/*.pyi",
     ),
     "pydantic_core": ("pydantic_core/*.pyi",),
-    "opencv_python_headless": ("cv2/*.pyi",),
+    # Films are not read: FFmpeg, and what it wants.
+    "opencv_python_headless": (
+        "cv2/*.pyi",
+        "*.libs/libcrypto-*",
+        "*.libs/libdrm-*",
+        "*.libs/libssl-*",
+        "*.libs/libswresample-*",
+        "*.libs/libvpx-*",
+    ),
 }
 """What is left out of a part: patterns of paths, in which * also stands for /."""
+EMPTY = ("*.libs/libavcodec-*", "*.libs/libavformat-*", "*.libs/libavutil-*", "*.libs/libswscale-*")
+"""Libraries that OpenCV wants to be there, and of which nothing is ever called."""
+UNCALLED = ("av_", "avcodec_", "avformat_", "avio_", "avutil_", "sws_", "swscale_")
+"""How the names of their functions begin."""
 _LICENCE = ("*licen[cs]e*", "*copying*", "*notice*", "*authors*")
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A wheel as it is packed. sha256: of the wheel as it came. unpacked, left_out: bytes. about: its METADATA."""
+    """A wheel as it is packed. python: the only one that it is for. sha256: of the wheel as it came.
 
-    path: Path
+    common, bound, left_out: bytes that every Python and that one Python loads, and that are not packed.
+    about: its METADATA. licences: texts by their paths.
+    """
+
+    wheel: str
     sha256: str
-    unpacked: int
+    python: str | None
+    common: int
+    bound: int
     left_out: int
+    tops: frozenset[str]
     about: Message
     licences: dict[str, bytes]
 
@@ -88,58 +108,52 @@ def fetch(own: Path, arch: str, python: str, pins: Path, folder: Path) -> list[P
     abis = [f"--abi={abi}" for abi in (f"cp{python.replace('.', '')}", "abi3", "none")]
     _pip(
         "download", "--only-binary=:all:", "--implementation=cp", f"--python-version={python}", *abis, *platforms,
-        "--constraint", str(pins), "--dest", str(folder), str(own),
+        "--constraint", str(pins), "--dest", str(folder), f"{own}[{','.join(EXTRAS)}]",
     )  # fmt: skip
     return sorted(path for path in folder.glob("*.whl") if path.name != own.name)
 
 
-def repack(wheel: Path, folder: Path, *, small: bool) -> Part:
-    """Write the wheel anew into the folder, without its dead weight and with a RECORD that says so.
+def python_of(wheel: str) -> str | None:
+    """The Python that a wheel is bound to by its name; None for one that serves several."""
+    bound = re.search(r"-cp3(\d+)-cp3\1-", wheel)
+    return f"3.{bound[1]}" if bound else None
 
-    small: squeezed with LZMA, which pip reads as well; takes minutes for all of them.
+
+def unpack(wheel: Path, folder: Path) -> Part:
+    """Write what a board loads of the wheel below folder: into `common`, or into `python3.N` where it is bound to it.
+
+    The libraries beside a bound wheel have their content's mark in their names, and are common to all.
     """
-    target = folder / wheel.name
-    dead = DEAD.get(wheel.name.split("-")[0], ())
-    unpacked, licences, about = 0, dict[str, bytes](), Message()
-    method = zipfile.ZIP_LZMA if small else zipfile.ZIP_DEFLATED
-    with (
-        zipfile.ZipFile(wheel) as given,
-        zipfile.ZipFile(target.with_suffix(".part"), "w", method, compresslevel=1) as packed,
-    ):
-        given_size = sum(entry.file_size for entry in given.infolist())
-        kept = [entry for entry in given.infolist() if not any(fnmatch(entry.filename, pattern) for pattern in dead)]
-        for entry in kept:
-            content = given.read(entry)
-            if entry.filename.endswith(".dist-info/RECORD"):
-                content = record(content, {other.filename for other in kept})
-            if entry.filename.endswith(".dist-info/METADATA"):
+    python, name = python_of(wheel.name), wheel.name.split("-")[0]
+    sizes, tops, licences, about = {True: 0, False: 0}, set[str](), dict[str, bytes](), Message()
+    with zipfile.ZipFile(wheel) as given:
+        entries = [entry for entry in given.infolist() if not entry.is_dir()]
+        for path, content in ((entry.filename, given.read(entry)) for entry in entries):
+            if is_licence(path):
+                licences[path] = content
+            elif not is_dead(name, path):
+                is_bound = python is not None and ".libs/" not in path
+                lean = leaner(path, content)
+                _write(folder / (f"python{python}" if is_bound else "common") / path, lean)
+                sizes[is_bound] += len(lean)
+                tops.add(path.split("/")[0])
+            if path.endswith(".dist-info/METADATA"):
                 about = BytesParser().parsebytes(content)
-            if is_licence(entry.filename):
-                licences[entry.filename] = content
-            packed.writestr(entry, content, compress_type=method)
-            unpacked += len(content)
-    target.with_suffix(".part").rename(target)
-    return Part(
-        target, hashlib.sha256(wheel.read_bytes()).hexdigest(), unpacked, given_size - unpacked, about, licences
-    )
+        left_out = sum(entry.file_size for entry in entries) - sum(sizes.values())
+    digest = hashlib.sha256(wheel.read_bytes()).hexdigest()
+    return Part(wheel.name, digest, python, sizes[False], sizes[True], left_out, frozenset(tops), about, licences)
 
 
-def record(given: bytes, kept: Iterable[str]) -> bytes:
-    """The rows of RECORD for the files that were kept."""
-    left, text = set(kept), io.StringIO()
-    rows = [row for row in csv.reader(io.StringIO(given.decode())) if row and row[0] in left]
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue().encode()
+def is_dead(name: str, path: str) -> bool:
+    """Also the list of what is in the wheel, which nobody reads: files are left out, and dpkg has sums of its own."""
+    return path.endswith(".dist-info/RECORD") or any(fnmatch(path, pattern) for pattern in DEAD.get(name, ()))
 
 
-def differences(wheel: Path) -> list[str]:
-    """Where a wheel and its RECORD disagree; empty for a whole one."""
-    with zipfile.ZipFile(wheel) as packed:
-        name = next(name for name in packed.namelist() if name.endswith(".dist-info/RECORD"))
-        said = {row[0]: row[1] for row in csv.reader(io.StringIO(packed.read(name).decode())) if row}
-        files = {entry.filename for entry in packed.infolist() if not entry.is_dir()}
-        wrong = sorted(files ^ set(said))
-        return wrong + [file for file in sorted(files & set(said)) if said[file] not in ("", _hash(packed.read(file)))]
+def leaner(path: str, content: bytes) -> bytes:
+    """The file as it is packed."""
+    if any(fnmatch(path, pattern) for pattern in EMPTY):
+        return elf.empty(content)
+    return elf.without(content, UNCALLED) if fnmatch(path, "cv2/cv2.*.so") else content
 
 
 def is_licence(path: str) -> bool:
@@ -150,8 +164,9 @@ def is_licence(path: str) -> bool:
     return bool(name) and (in_metadata or at_top) and any(fnmatch(name.lower(), pattern) for pattern in _LICENCE)
 
 
-def _hash(content: bytes) -> str:
-    return "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+def _write(place: Path, content: bytes) -> None:
+    place.parent.mkdir(parents=True, exist_ok=True)
+    place.write_bytes(content)
 
 
 def _pip(*words: str) -> None:

@@ -225,7 +225,7 @@ def test_the_pen_of_a_simulated_machine_is_up_where_the_settings_say() -> None:
 
 def test_the_daemons_own_process_loads_no_network_no_vision_and_no_arrays() -> None:
     program = (
-        "import sys; from daemon.cli import __main__ as main; main._parser(); "
+        "import sys; from daemon.cli import __main__ as main; main.whole_parser(); "
         "print({'onnxruntime', 'cv2', 'numpy', 'torch'} & set(sys.modules))"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

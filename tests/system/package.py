@@ -174,6 +174,12 @@ class Life:
         assert not (self._root / "opt/linedrawd.new").exists()
         assert "linedrawd" in self._debian.run("linedrawd", "--version")
         self._say("another Python of the system: the environment is made again")
+        self._stale()
+        (self._root / "usr/lib/linedrawd/pythons").write_text("python3.0\n")
+        said = self._debian.run("/usr/lib/linedrawd/environment", "start", check=False)
+        assert "this version is for python3.0, and Debian's is python3." in said
+        assert "linedrawd" in self._debian.run("linedrawd", "--version")
+        self._say("a Python that it is not for: it says so, and leaves the environment alone")
 
     def remove(self) -> None:
         self._debian.run("dpkg", "--remove", "linedrawd")
