@@ -65,24 +65,26 @@ def status(args: argparse.Namespace) -> int:
     if len(machines) > 1:
         for name, machine in machines.items():
             print(f"\n{name}")
-            _print_fields(machine)
+            _print_fields(machine, name)
     return 0 if runs else 1
 
 
-def _print_fields(said: dict[str, Any]) -> None:
+def _print_fields(said: dict[str, Any], machine: str = "") -> None:
+    """machine: the one that is told of, where there are several."""
     for key, value in said.items():
         if value not in ("", None, 0, 0.0) and (key, value) != ("feed_percent", 100):
             print(f"{key.replace('_', ' '):14} {value}")
     if said.get("jobs_to_approve"):
         print(f"{'to approve':14} {meaning_of(State.WAITING, Reason.APPROVAL).remedy}")
-    if said.get("reason") and (remedy := _remedy(str(said["state"]), str(said["reason"]))):
+    if said.get("reason") and (remedy := _remedy(str(said["state"]), str(said["reason"]), machine)):
         print(f"{'what to do':14} {remedy}")
 
 
 def jobs(args: argparse.Namespace) -> int:
     settings = settings_of(args)
     root, several = settings.paths.jobs, len(settings.machines) > 1
-    found = (job for folder in (sorted(os.listdir(root)) if root.is_dir() else []) for job in _job(root / folder))
+    folders = sorted(os.listdir(root)) if root.is_dir() else []
+    found = (job for folder in folders for job in _job(root / folder, several=several))
     if args.json:
         print(json.dumps([job | _figures(root / job["id"]) for job in found], indent=1, ensure_ascii=False))
         return 0
@@ -94,8 +96,11 @@ def jobs(args: argparse.Namespace) -> int:
     return 0
 
 
-def _job(folder: Path) -> Iterator[dict[str, str]]:
-    """What its log tells of a job, nothing for a folder that is no job or whose log cannot be read."""
+def _job(folder: Path, *, several: bool) -> Iterator[dict[str, str]]:
+    """What its log tells of a job, nothing for a folder that is no job or whose log cannot be read.
+
+    several: there are several machines.
+    """
     try:
         log = (folder / JOB_LOG_NAME).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -105,16 +110,16 @@ def _job(folder: Path) -> Iterator[dict[str, str]]:
         named = _NAME.search(log[0])
         name = json.loads(named[1]) if named and named[1].startswith('"') else named[1] if named else folder.name
         last = steps[-1]
-        reason = last["quoted"] or last["reason"] or ""
+        reason, machine = last["quoted"] or last["reason"] or "", _machine_of(folder)
         yield {
             "id": folder.name,
             "name": name,
             "state": last["state"],
             "reason": reason,
-            "remedy": _remedy(last["state"], reason),
+            "remedy": _remedy(last["state"], reason, machine if several else ""),
             "changed": last["time"],
             "words": last["words"],
-            "machine": _machine_of(folder),
+            "machine": machine,
             "folder": str(folder),
         }
 
@@ -125,12 +130,13 @@ def _machine_of(folder: Path) -> str:
     return record.machine or record.bound_to if record else ""
 
 
-def _remedy(state: str, reason: str) -> str:
+def _remedy(state: str, reason: str, machine: str) -> str:
     """What a person does about it; "" for what another version has written."""
     try:
-        return meaning_of(State(state), Reason(reason)).remedy
+        meaning = meaning_of(State(state), Reason(reason))
     except ValueError:
         return ""
+    return meaning.remedy_at(machine) if machine else meaning.remedy
 
 
 def _figures(folder: Path) -> dict[str, Any]:

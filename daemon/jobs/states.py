@@ -4,6 +4,7 @@ drawing ended.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from enum import Enum
 
@@ -34,6 +35,7 @@ class Reason(Enum):
     DOOR = "door"
     AT_THE_MACHINE = "at the machine"
     POWER = "power"
+    PEN_CHANGE = "pen change"
     CONTROLLER = "controller error"
     POSITION_KNOWN = "position known"
     POSITION_UNKNOWN = "position unknown"
@@ -50,7 +52,7 @@ STEPS: dict[tuple[State, State], str] = {
     (State.WAITING, State.QUEUED): "another machine is free",
     (State.PLANNED, State.DRAWING): "its turn",
     (State.WAITING, State.DRAWING): "its turn",
-    (State.DRAWING, State.PAUSED): "pause, door, feed hold",
+    (State.DRAWING, State.PAUSED): "pause, pen change, door, feed hold",
     (State.PAUSED, State.PAUSED): "for another reason",
     (State.PAUSED, State.DRAWING): "resume, cycle start",
     (State.INTERRUPTED, State.WAITING): "resume JOB --from-stroke K",
@@ -97,6 +99,12 @@ class Meaning:
     means: str
     remedy: str
 
+    def remedy_at(self, machine: str) -> str:
+        """The remedy where there are several machines: its commands name this one."""
+        return _OF_A_MACHINE.sub(rf"`\1 --machine {machine}`", self.remedy)
+
+
+_OF_A_MACHINE = re.compile(r"`(linedrawd (?:next|go|pause|resume|stop|drain|machine \w+))`")
 
 MEANINGS: dict[tuple[State, Reason], Meaning] = {
     (State.QUEUED, Reason.NONE): Meaning("The picture lies in its job's folder. No ink.", "Nothing."),
@@ -115,6 +123,10 @@ MEANINGS: dict[tuple[State, Reason], Meaning] = {
     (State.DRAWING, Reason.NONE): Meaning("The machine draws it.", "`linedrawd pause`, `stop`, `drain`."),
     (State.PAUSED, Reason.PERSON): Meaning(
         "A person said `pause`: the pen is up, the machine stands.", "`linedrawd resume` goes on, `stop` ends it."
+    ),
+    (State.PAUSED, Reason.PEN_CHANGE): Meaning(
+        "One pen has drawn all its lines; the machine is parked, its pen up, and waits for the next one.",
+        "Put in the pen that its words name, then `linedrawd resume`, or press the button; `linedrawd stop` ends it.",
     ),
     (State.PAUSED, Reason.DOOR): Meaning(
         "The machine's safety door is open; the pen stands where it was, maybe on the sheet.",

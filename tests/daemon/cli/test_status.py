@@ -54,3 +54,30 @@ def test_a_new_state_has_no_reason_of_the_one_before(tmp_path: Path) -> None:
     assert board.now.reason == "door"
     board.change(state="drawing")
     assert board.now.reason == ""
+    board.change_machine("plotter", state="paused", reason="door")
+    board.change_machine("plotter", percent=3.0)
+    assert board.now.machines["plotter"].reason == "door"
+    board.change_machine("plotter", state="held")
+    assert board.now.machines["plotter"].reason == ""
+
+
+def test_where_there_are_several_machines_what_to_do_names_the_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "run").mkdir()
+    board = StatusBoard(tmp_path / "run" / "status.json")
+    board.change(pid=os.getpid())
+    for name, reason in (("left", "door"), ("right", "person")):
+        board.change_machine(name, state="paused", reason=reason)
+    board.tick(0.0)
+    assert main(["status", "--state-dir", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "say `linedrawd resume --machine left`; `stop` ends it" in said
+    assert "`linedrawd resume --machine right` goes on" in said
+
+
+def test_a_remedy_names_the_machine_only_where_it_is_told_which() -> None:
+    remedy = meaning_of(State.INTERRUPTED, Reason.POSITION_UNKNOWN).remedy_at("left")
+    assert "`linedrawd machine origin --machine left`" in remedy
+    assert "`linedrawd go --machine left`" in remedy
+    assert "`linedrawd again JOB`" in remedy
