@@ -40,7 +40,8 @@ def open_picture(
     if dxf.HEAD.match(head):
         return _read(path, name, "a DXF", dxf.MOST_BYTES, dxf.read_dxf, pens)
     if pdf.HEAD.match(head):
-        read_pdf = partial(pdf.read_pdf, page=page, max_megapixels=max_megapixels)
+        in_colour = bool(pens.names)
+        read_pdf = partial(pdf.read_pdf, page=page, max_megapixels=max_megapixels, in_colour=in_colour)
         return _read(path, name, "a PDF", pdf.MOST_BYTES, read_pdf, pens)
     if HEIC.match(head):
         read = partial(read_heif, max_megapixels=max_megapixels, in_colour=bool(pens.names))

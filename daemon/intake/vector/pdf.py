@@ -10,10 +10,12 @@ from contextlib import closing, contextmanager
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daemon.intake.pages import checked_page
 from daemon.intake.vector.common import Rendered, Vectors, checked_size
 from daemon.intake.vector.pdf_paths import Reading
+from daemon.intake.vector.seen import share_seen
 from daemon.intake.vector.svg_units import Matrix
 
 MOST_BYTES = 200_000_000
@@ -22,30 +24,30 @@ _MM_PER_PT = 25.4 / 72
 _DPI = 300.0
 _MOST_MEGAPIXELS = 35.0
 """A page of A2 at 300 dpi: the lines of a larger one are seen with fewer."""
+_LOOK_DPI, _LOOK_MEGAPIXELS = 150.0, 4.0
+_LEAST_SEEN = 0.98
 _LINKS = ("LINK", "POPUP")
 _UNIT = re.compile(rb"/Type\s*/Page\s*/UserUnit\s+([0-9.]+)")
-_HIDDEN_LAYERS = re.compile(rb"/OFF\s*\[\s*\d|/BaseState\s*/OFF")
 
 
-def read_pdf(data: bytes, *, page: int, max_megapixels: float) -> Vectors | Rendered:
+def read_pdf(data: bytes, *, page: int, max_megapixels: float, in_colour: bool = False) -> Vectors | Rendered:
     """One page of a PDF, from 1 on, as large as it says, turned and cropped as it is shown.
 
-    Lines where it holds paths alone: outlines of what is filled, cut off at the box round its clip, without what is
-    white. With text, pictures, shadings or notes on it, or where the file hides layers, all of it is a picture of
-    300 dpi, fewer where the page is larger than A2, or that were more than max_megapixels. Raises ValueError with what
-    is wrong and its cure, ModuleNotFoundError without pypdfium2.
+    Lines where it holds paths alone and looks like them: outlines of what is filled, cut off at the box round its clip,
+    without what is white. With text, pictures, shadings or notes on it, or where something hides lines, all of it is a
+    picture of 300 dpi, fewer where the page is larger than A2, or that were more than max_megapixels. in_colour: such a
+    picture keeps its colours. Raises ValueError with what is wrong and its cure, ModuleNotFoundError without pypdfium2.
     """
     with _opened(data) as document:
         index = checked_page(page, len(document)) - 1
-        plain = _plain(document, data)
-        unit_mm = _MM_PER_PT * (_user_unit(document, index) if b"/UserUnit" in plain else 1.0)
+        unit_mm = _MM_PER_PT * _user_unit(document, data, index)
         with closing(document[index]) as sheet:
             size_mm = checked_size(*(side * unit_mm for side in sheet.get_size()))
-            if not _HIDDEN_LAYERS.search(plain) and not _has_notes(sheet):
-                found = Reading(_raw(), sheet, _to_mm(sheet, unit_mm)).vectors(size_mm)
-                if found is not None:
-                    return found
-            return _rendered(sheet, unit_mm, max_megapixels)
+            reading = Reading(_raw(), sheet, _to_mm(sheet, unit_mm))
+            found = None if _has_notes(sheet) else reading.vectors(size_mm)
+            if found is None or not _looks_like(sheet, unit_mm, found):
+                return _rendered(sheet, unit_mm, max_megapixels, in_colour=in_colour)
+            return found
 
 
 def pages_of_pdf(data: bytes) -> int:
@@ -78,19 +80,10 @@ def _raw() -> Any:
     return pypdfium2.raw
 
 
-def _plain(document: Any, data: bytes) -> bytes:
-    """The file with what it says of its pages and layers in the open, of which PDFium tells nothing."""
-    return _saved(document) if b"/ObjStm" in data else data
-
-
-def _saved(document: Any) -> bytes:
-    file = io.BytesIO()
-    document.save(file)
-    return file.getvalue()
-
-
-def _user_unit(document: Any, index: int) -> float:
-    """How many points a unit of this page is (PDF 1.6); PDFium takes it for 1."""
+def _user_unit(document: Any, data: bytes, index: int) -> float:
+    """How many points a unit of this page is (PDF 1.6); PDFium takes it for 1, and tells it only to files."""
+    if b"/UserUnit" not in (_saved(document) if b"/ObjStm" in data else data):
+        return 1.0
     alone = type(document).new()
     try:
         alone.import_pages(document, [index])
@@ -98,6 +91,13 @@ def _user_unit(document: Any, index: int) -> float:
         return float(found[1]) if found else 1.0
     finally:
         alone.close()
+
+
+def _saved(document: Any) -> bytes:
+    """The file anew, with nothing but streams squeezed."""
+    file = io.BytesIO()
+    document.save(file)
+    return file.getvalue()
 
 
 def _has_notes(sheet: Any) -> bool:
@@ -113,16 +113,35 @@ def _has_notes(sheet: Any) -> bool:
     return False
 
 
-def _rendered(sheet: Any, unit_mm: float, max_megapixels: float) -> Rendered:
-    width_pt, height_pt = sheet.get_size()
-    most_px_per_pt = math.sqrt(0.98e6 * min(max_megapixels, _MOST_MEGAPIXELS) / (width_pt * height_pt))
-    px_per_pt = min(_DPI / 25.4 * unit_mm, most_px_per_pt)
-    picture = sheet.render(scale=px_per_pt, grayscale=True, may_draw_forms=False)
-    grey = np.array(picture.to_numpy(), np.uint8).reshape(picture.height, picture.width)
-    picture.close()
+def _looks_like(sheet: Any, unit_mm: float, found: Vectors) -> bool:
+    """Whether ink begins or ends along the lines: a mask, a layer that is off or a white shape may hide them."""
+    px_per_pt = min(_LOOK_DPI / 25.4 * unit_mm, _px_per_pt(sheet, _LOOK_MEGAPIXELS))
+    grey = _painted(sheet, px_per_pt, grayscale=True)
+    return share_seen(grey, [line * px_per_pt / unit_mm for line in found.lines]) >= _LEAST_SEEN
+
+
+def _rendered(sheet: Any, unit_mm: float, max_megapixels: float, *, in_colour: bool) -> Rendered:
+    px_per_pt = min(_DPI / 25.4 * unit_mm, _px_per_pt(sheet, min(max_megapixels, _MOST_MEGAPIXELS)))
+    colour = _painted(sheet, px_per_pt, grayscale=False) if in_colour else None
+    grey = _painted(sheet, px_per_pt, grayscale=True)
     px_per_mm = px_per_pt / unit_mm
-    words = f"the page holds more than lines: it was read as a picture of {px_per_mm * 25.4:.0f} dpi"
-    return Rendered(grey, px_per_mm, (words,))
+    words = f"the page holds more than plain lines: it was read as a picture of {px_per_mm * 25.4:.0f} dpi"
+    return Rendered(grey, px_per_mm, (words,), colour)
+
+
+def _px_per_pt(sheet: Any, most_megapixels: float) -> float:
+    """The scale at which the page has as many pixels as that, nearly."""
+    width_pt, height_pt = sheet.get_size()
+    return math.sqrt(0.98e6 * most_megapixels / (width_pt * height_pt))
+
+
+def _painted(sheet: Any, px_per_pt: float, *, grayscale: bool) -> NDArray[np.uint8]:
+    """(H, W), or (H, W, 3) as blue green red."""
+    picture = sheet.render(scale=px_per_pt, grayscale=grayscale, may_draw_forms=False)
+    try:
+        return np.array(picture.to_numpy(), np.uint8)
+    finally:
+        picture.close()
 
 
 def _to_mm(sheet: Any, unit_mm: float) -> Matrix:

@@ -43,7 +43,7 @@ class Reading:
     def __init__(self, raw: Any, sheet: Any, to_mm: Matrix) -> None:
         self._c, self._sheet, self._to_mm = raw, sheet, to_mm
         self._collected = Collected()
-        self._white = self._cut = 0
+        self._white = 0
 
     def vectors(self, size_mm: tuple[float, float]) -> Vectors | None:
         """All lines of the page; None where it holds something else. Raises ValueError where it holds too much."""
@@ -59,8 +59,6 @@ class Reading:
     def _warnings(self) -> Iterator[str]:
         if self._white:
             yield f"{self._white} white shapes are left out"
-        if self._cut:
-            yield f"{self._cut} shapes are cut off at the box round what they are clipped by, which is no box"
 
     def _shown(self) -> Iterator[_Shown]:
         """Each object of the page but forms, which are taken apart."""
@@ -144,8 +142,6 @@ class Reading:
 
     def _common(self, box: Box, clip: Points) -> Box:
         low, high = clip.min(axis=0), clip.max(axis=0)
-        area = 0.5 * abs(float(np.sum(np.roll(clip[:, 0], 1) * clip[:, 1] - np.roll(clip[:, 1], 1) * clip[:, 0])))
-        self._cut += float(np.prod(high - low)) - area > FLAT_MM * float(np.sum(high - low))
         # The lines on a clip's own edge are seen by half of their width.
         low, high = np.maximum(box[0], low - FLAT_MM), np.minimum(box[1], high + FLAT_MM)
         return (low[0], low[1]), (high[0], high[1])

@@ -102,7 +102,7 @@ def test_a_picture_of_larger_units_has_its_true_resolution() -> None:
 
 
 @pytest.mark.parametrize("packed", [False, True], ids=["in the open", "in an object stream"])
-def test_where_layers_are_hidden_the_page_is_read_as_it_looks(packed: bool) -> None:
+def test_where_a_layer_is_hidden_the_page_is_read_as_it_looks(packed: bool) -> None:
     layer = "<< /Type /OCG /Name (hidden) >>"
     shown = "/OCProperties << /OCGs [3 0 R] /D << /OFF [ 3 0 R ] >> >>"
     content = "/OC /L BDC 0 10 m 72 10 l S EMC"
@@ -119,9 +119,25 @@ def test_a_form_shows_no_more_than_the_clip_that_it_is_drawn_in() -> None:
     assert [x for x, _ in line] == pytest.approx([10, 30], abs=0.1)
 
 
-def test_a_clip_that_is_no_box_is_told() -> None:
-    found = read(pdf(["0 0 m 60 0 l 0 60 l h W n 0 10 m 72 10 l S"]))
-    assert found.warnings == ("1 shapes are cut off at the box round what they are clipped by, which is no box",)
+@pytest.mark.parametrize(
+    "content",
+    [
+        "0 0 m 60 0 l 0 60 l h W n 0 10 m 72 50 l S",
+        "0 10 m 72 10 l S 1 g 20 0 40 20 re f",
+        "0 g 9 9 50 50 re f 9 9 m 59 59 l S",
+    ],
+    ids=["clip that is no box", "white over it", "black in black"],
+)
+def test_where_lines_are_hidden_the_page_is_read_as_it_looks(content: str) -> None:
+    assert isinstance(read_pdf(pdf([content]), page=1, max_megapixels=10), Rendered)
+
+
+def test_a_picture_keeps_its_colours_where_they_are_asked_for() -> None:
+    found = read_pdf(pdf([f"1 0 0 rg 1 0 0 RG {TEXT}"], resources=FONTS), page=1, max_megapixels=10, in_colour=True)
+    assert isinstance(found, Rendered)
+    assert found.colour is not None
+    assert found.colour.shape == (600, 300, 3)
+    assert found.colour.reshape(-1, 3).min(axis=0).tolist() == [0, 0, 255]
 
 
 @pytest.mark.parametrize("page", ["", "/Rotate 90 /CropBox [8 4 60 120]", "/Rotate 180", "/Rotate 270"])
@@ -175,7 +191,7 @@ def test_a_page_with_text_or_pictures_is_a_picture_of_its_true_size(content: str
     assert found.grey.shape == (600, 300)
     assert found.px_per_mm == pytest.approx(300 / 25.4)
     assert found.grey.min() < 50
-    assert found.warnings == ("the page holds more than lines: it was read as a picture of 300 dpi",)
+    assert found.warnings == ("the page holds more than plain lines: it was read as a picture of 300 dpi",)
 
 
 @pytest.mark.parametrize(("max_megapixels", "expected"), [(4, 4e6), (100, 35e6)])
