@@ -19,6 +19,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from daemon.control import Order, give_order
 from daemon.shapes import Grey
 from tests.benchmarks.latency import busy_s, daemon, drop
 from tests.benchmarks.sheets import sheet
@@ -28,6 +29,9 @@ from tests.torture.rig import await_
 BAR_MS = 20.0
 FSYNCS_BAR = 2.0
 """A second, while it draws."""
+STOP_BAR_MS = 100.0
+_SETTLES_S = 5.0
+"""Until the worker is at work, and while the drawing goes on in any case."""
 _WATCHED_S = 100.0
 """Some thousands of lines: of fewer the slowest thousandth is one or two."""
 _PLANNED = 2
@@ -52,6 +56,11 @@ def show() -> None:
     with drawing(_FINE) as (watched, inbox):
         plan(inbox)
         watched.row("sent ahead")
+    with drawing(_FINE) as (watched, inbox):
+        plan(inbox)
+        time.sleep(_SETTLES_S)
+        held_ms = 1000 * watched.stop(inbox.parent / "run" / "control.sock")
+        print(f"an order to stop came to the controller as a feed hold within {held_ms:.0f} ms, bar {STOP_BAR_MS:g} ms")
 
 
 @contextmanager
@@ -107,6 +116,14 @@ class Watched:
         a_second = f"{(self._fsyncs() - fsyncs) / _WATCHED_S:.2f}" if self._told.exists() else "?"
         late, busy = "".join(f"{each:>8.2f}" for each in figures), (busy_s(self._pid) - before_s) / _WATCHED_S
         print(f"{name:18}{len(late_s):>8}{late}{a_second:>10}{self._wire.dry - dry:>6}{busy:>11.0%}", flush=True)
+
+    def stop(self, control: Path) -> float:
+        """Seconds from the order to the feed hold, while something is drawn."""
+        asked_s = time.monotonic()
+        give_order(control, Order(order="stop"))
+        await_("it holds", lambda: self._wire.held_at_s is not None, within_s=_BEGINS_WITHIN_S)
+        assert self._wire.held_at_s is not None
+        return self._wire.held_at_s - asked_s
 
     def _fsyncs(self) -> int:
         """Of the daemon's own threads so far; those of its worker delay no line."""

@@ -29,6 +29,8 @@ class Wire:
         """When the first draw move since `await_line` came, on the clock of the wall."""
         self.late_s: list[float] = []
         """For each answer that was followed by bytes: how long after it they came, s."""
+        self.held_at_s: float | None = None
+        """When it was first told to hold, on the clock that only goes forward."""
         self._answered_s: float | None = None
         self._awaited = False
 
@@ -64,6 +66,8 @@ class Wire:
     def receive(self, data: bytes, now: float) -> None:
         if self._awaited and any(word in data for word in _DRAWS):
             self.line_at_s, self._awaited = time.time(), False
+        if b"!" in data:
+            self.held_at_s = self.held_at_s or time.monotonic()
         if data.strip(b"?") and self._answered_s is not None:
             self.late_s.append(time.monotonic() - self._answered_s)
             self._answered_s = None
