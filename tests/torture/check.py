@@ -44,7 +44,7 @@ class Checks:
         self._daemon, self._machines = daemon, machines
         self._dropped: dict[str, str] = {}
         self._programs: dict[str, list[Line]] = {}
-        self._known: dict[str, list[Inked | None]] = {machine.name: [] for machine in machines}
+        self.known: dict[str, list[Inked | None]] = {machine.name: [] for machine in machines}
         """What each line of ink is, on the sheet of each machine."""
         self.found = Found()
         self.cancelled: set[str] = set()
@@ -103,17 +103,17 @@ class Checks:
     def _check_ink(self, jobs: dict[str, Told], sheets: dict[str, Sheet]) -> None:
         programs = {job.id: self._program(job.id) for job in jobs.values() if State.DRAWING in job.states}
         for machine, sheet in sheets.items():
-            self._identify(self._known[machine], sheet.lines, programs)
-        self._check_times()
+            self._identify(self.known[machine], sheet.lines, programs)
+        self.check_times()
         for job in jobs.values():
             if job.over:
                 self._check_words(job)
             if missing := set(range(job.certain)) - self._strokes(job, whole=True):
                 self._wrong(job, f"strokes {sorted(missing)}, certain in the journal, are not there whole")
 
-    def _check_times(self) -> None:
+    def check_times(self) -> None:
         """Every line of ink is a stroke, each stroke is there once, and those of a job are on one sheet."""
-        for machine, lines in self._known.items():
+        for machine, lines in self.known.items():
             for number, known in enumerate(lines):
                 if known is None:
                     words = f"line {number} of the ink of {machine} is of no stroke of any job"
@@ -121,7 +121,7 @@ class Checks:
         for (job, stroke), times in Counter((known.job, known.stroke) for known in self._inked()).items():
             if times > 1:
                 self.found.doubled[f"{job} {stroke}"] = f"stroke {stroke} of job {job} was inked {times} times"
-        on = Counter(job for lines in self._known.values() for job in {known.job for known in lines if known})
+        on = Counter(job for lines in self.known.values() for job in {known.job for known in lines if known})
         for job, machines in on.items():
             if machines > 1:
                 self.found.doubled[job] = f"ink of job {job} is on the sheets of {machines} machines"
@@ -134,7 +134,7 @@ class Checks:
 
     def _inked(self) -> Iterator[Inked]:
         """Every line of ink that is known, of all machines."""
-        return (known for lines in self._known.values() for known in lines if known)
+        return (known for lines in self.known.values() for known in lines if known)
 
     def _identify(self, known: list[Inked | None], lines: list[Line], programs: dict[str, list[Line]]) -> None:
         """The last line may have grown since, every other one is known once and for ever."""
