@@ -36,6 +36,7 @@ _LEAST_SPECK_PX = 3
 _USUAL_PX = 2.5
 """Line width of a page on which nobody has estimated it: what pages are scaled to."""
 _ROUNDS = 4
+_BLOT_WIDTHS = 12.0
 
 Floats32: TypeAlias = NDArray[np.float32]
 
@@ -44,11 +45,13 @@ Floats32: TypeAlias = NDArray[np.float32]
 class _Ink:
     """The ink of a page: its lines as a mask, its dots (D, 2) in px, line width and specks, and the page's greys.
 
+    blots: (B, 6), what is larger than a dot and no area: its middle in px, and its box as left, top, width and height.
     levels: float32 (256,), how much of a pixel of each grey level is inked, 0..1.
     """
 
     lines: Mask
     dots: Points
+    blots: Points
     width_px: float
     specks: int
     grey: Grey
@@ -89,7 +92,8 @@ def interpret_with_reasons(
     _check(page, segmentation)
     ink = _ink_of(page)
     graph, why = _lines(segmentation, ink, adaptation or Adaptation())
-    return replace(_with_dots(graph, ink.dots), specks=ink.specks), why
+    dots = np.concatenate([ink.dots, _left_bare(ink.blots, graph, page.grey.shape)])
+    return replace(_with_dots(graph, dots), specks=ink.specks), partial(why, dots)
 
 
 def _check(page: PageImage, segmentation: Segmentation) -> None:
@@ -108,11 +112,14 @@ def _ink_of(page: PageImage) -> _Ink:
     areas = stats[:, cv2.CC_STAT_AREA]
     width_px = page.line_width_px or _USUAL_PX
     dirt = areas < _LEAST_SPECK_PX
-    dots = ~dirt & (stats[:, 2:4].max(axis=1) <= 1.5 * width_px + 1.0)
-    dots[0] = dirt[0] = False
+    sides = stats[:, 2:4].max(axis=1)
+    dots = ~dirt & (sides <= 1.5 * width_px + 1.0)
+    blots = ~dirt & ~dots & (sides <= _BLOT_WIDTHS * width_px)
+    dots[0] = dirt[0] = blots[0] = False
     lines = mask & ~(dots | dirt)[labels]
     middles = np.asarray(centres[dots], np.float64).reshape(-1, 2)
-    return _Ink(lines, middles, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask))
+    about = np.concatenate([centres[blots], stats[blots, :4]], axis=1)
+    return _Ink(lines, middles, about, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask))
 
 
 def _levels(grey: Grey, mask: Mask) -> Floats32:
@@ -131,8 +138,10 @@ def _by_the_paper(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation)
     return LineGraph(vertices, tuple(edges))
 
 
-def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> tuple[LineGraph, Callable[[], Reasons]]:
-    """The edges of all ink but the dots, and the reasons."""
+def _lines(
+    segmentation: Segmentation, ink: _Ink, adaptation: Adaptation
+) -> tuple[LineGraph, Callable[[Points], Reasons]]:
+    """The edges of all ink but the dots, and what gives the reasons once these are known."""
     width_px, shape = ink.width_px, (ink.lines.shape[0], ink.lines.shape[1])
     skeleton = thinned(ink.lines, shortest_spur_px=width_px / 2 + 1.5)
     corners = corner_vertices(segmentation.corners, ink.lines)
@@ -145,11 +154,11 @@ def _lines(segmentation: Segmentation, ink: _Ink, adaptation: Adaptation) -> tup
     pieces, of, ends, vertices = _cut_at_tips(skeleton, traced, nodes.vertices, ink.lines)
     polylines, origins = [nodes.vertices[pair] for pair in straight] + pieces, looked_at.origins(of)
     if not polylines:
-        return LineGraph(np.empty((0, 2)), ()), partial(reasons, looked_at, origins, [], ink.dots)
+        return LineGraph(np.empty((0, 2)), ()), partial(reasons, looked_at, origins, [])
     polylines, ends, members = joined(polylines, np.concatenate([straight, ends]), vertices)
     lines, origins = _on_ridge(polylines, ends, vertices, origins.joined(members), ink)
     filled = _filled(lines, ink)
-    why = partial(reasons, looked_at, origins, filled.polylines[len(lines.polylines) :], ink.dots)
+    why = partial(reasons, looked_at, origins, filled.polylines[len(lines.polylines) :])
     return _used(filled.vertices, _edges(filled, segmentation.lines + segmentation.corners)), why
 
 
@@ -228,6 +237,19 @@ def _used(vertices: Points, edges: list[Edge]) -> LineGraph:
     number = (np.cumsum(kept) - 1).tolist()
     renamed = [replace(edge, start=number[edge.start], end=number[edge.end]) for edge in edges]
     return LineGraph(vertices[kept], tuple(renamed))
+
+
+def _left_bare(blots: Points, graph: LineGraph, shape: tuple[int, ...]) -> Points:
+    """The middles of the blots, (D, 2), that no edge runs through: what is round has no middle line."""
+    if not len(blots):
+        return np.empty((0, 2))
+    drawn = np.zeros(shape, bool)
+    for edge in graph.edges:
+        x, y = np.rint(edge.polyline).astype(np.intp).T
+        drawn[y.clip(0, shape[0] - 1), x.clip(0, shape[1] - 1)] = True
+    boxes = blots[:, 2:].astype(int).tolist()
+    bare = [not drawn[top : top + high, left : left + wide].any() for left, top, wide, high in boxes]
+    return blots[bare, :2]
 
 
 def _with_dots(graph: LineGraph, dots: Points) -> LineGraph:

@@ -113,5 +113,6 @@ BARS: dict[str, dict[str, Bar]] = {
     "hard photo": {"F1": Bar(0.985), "worst F1": Bar(0.95), "invented, px": Bar(high=0.0)},
     "scan": {"F1": Bar(0.99), "worst F1": Bar(0.95)},
     "overdrawn": {"F1": Bar(0.99), "strokes / minimum": Bar(high=1.3)},
+    "dashes": {"F1": Bar(0.99), "worst F1": Bar(0.97), "strokes / minimum": Bar(0.98, 1.02)},
     "apart": {"F1": Bar(0.98), "strokes / minimum": Bar(high=1.5)},
 }

@@ -37,7 +37,7 @@ class Measure:
     ink_recall: float
     """Share of the true ink that lies within 1 px of the drawn strokes' ink."""
     length_ratio: float
-    """Drawn length by the length of the union of the true lines."""
+    """Drawn length by the length of the union of the true lines; nan where these are dots."""
     stroke_ratio: float
     """strokes by minimum."""
     strokes: int
@@ -65,7 +65,7 @@ def measure(known: Known, drawn: Sequence[Points]) -> Measure:
         f1=2 * precision * recall / (precision + recall) if precision + recall else 0.0,
         iou=float(np.minimum(ink, redrawn).sum() / np.maximum(ink, redrawn).sum()),
         ink_recall=float(np.minimum(ink, wider).sum() / ink.sum()),
-        length_ratio=length_px(drawn) / max(fewest.union_px, 1e-9),
+        length_ratio=length_px(drawn) / fewest.union_px if fewest.union_px else math.nan,
         stroke_ratio=len(drawn) / fewest.fewest_strokes,
         strokes=len(drawn),
         minimum=fewest.fewest_strokes,

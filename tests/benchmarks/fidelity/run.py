@@ -15,6 +15,7 @@ from daemon.shapes import Points
 from tests.benchmarks.fidelity import peers, table, travel
 from tests.benchmarks.fidelity.bars import Scored
 from tests.benchmarks.fidelity.curves import curves
+from tests.benchmarks.fidelity.dashes import dashes
 from tests.benchmarks.fidelity.known import Known
 from tests.benchmarks.fidelity.measure import measure
 from tests.benchmarks.fidelity.ours import Understood, explained, understood
@@ -25,7 +26,19 @@ from tests.benchmarks.fidelity.scanned import scans
 from tests.benchmarks.fidelity.sketches import SKETCHES, sketches
 from tests.benchmarks.fidelity.technical import technical
 
-SETS = ("quickdraw", "scribbles", "curves", "technical", "photo", "hard photo", "scan", "overdrawn", "apart", "order")
+SETS = (
+    "quickdraw",
+    "scribbles",
+    "curves",
+    "technical",
+    "photo",
+    "hard photo",
+    "scan",
+    "overdrawn",
+    "apart",
+    "dashes",
+    "order",
+)
 OWN: dict[str, Callable[[], list[Known]]] = {
     "curves": curves,
     "technical": technical,
@@ -34,6 +47,7 @@ OWN: dict[str, Callable[[], list[Known]]] = {
     "scan": scans,
     "overdrawn": overdrawn,
     "apart": apart,
+    "dashes": dashes,
 }
 
 

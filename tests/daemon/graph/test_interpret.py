@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import cv2
 import numpy as np
 import pytest
 
 from daemon.graph.feedback import Adaptation
-from daemon.graph.interpret import _simplified, interpret
+from daemon.graph.interpret import _simplified, interpret, interpret_with_reasons
 from daemon.graph.ridge import onto_ridge
 from daemon.graph.strokes import strokes
 from daemon.shapes import LineGraph, PageImage, Segmentation
@@ -191,6 +194,17 @@ def test_twenty_thousand_specks_are_left_out_and_counted() -> None:
     graph = interpret(drawn, silent(drawn))
     assert graph.specks == 150 * 150
     assert len(graph.edges) == 1
+
+
+@pytest.mark.parametrize("radius_px", [3, 4])
+def test_a_round_blot_that_is_larger_than_a_dot_is_a_dot(radius_px: int) -> None:
+    """Its middle line is one pixel long."""
+    drawn = replace(page([[(80, 10), (80, 118)]]), line_width_px=2.0)
+    cv2.circle(drawn.grey, (20 * 16, 30 * 16), radius_px * 16, 0, -1, cv2.LINE_AA, 4)
+    graph, reasons = interpret_with_reasons(drawn, channels(drawn, []))
+    (dot,) = [edge for edge in graph.edges if len(edge.polyline) == 1]
+    assert np.abs(dot.polyline[0] - (20, 30)).max() < 0.6
+    assert len(reasons().edges) == len(graph.edges)
 
 
 def test_thousands_of_specks_are_thousands_of_dots() -> None:
