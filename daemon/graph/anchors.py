@@ -34,10 +34,26 @@ class Anchored:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Nearest:
-    """For each pixel of the page the nearest vertex and how far it is; 0 and a great distance where none is near."""
+    """The nearest vertex of the pixels that have one near by, and how far it is.
 
+    places: (N,) of those pixels, sorted, row * width + column.
+    """
+
+    width: int
+    places: Indices
     vertex: NDArray[np.int32]
     distance_px: NDArray[np.float16]
+
+    def at(self, y: Indices, x: Indices) -> tuple[NDArray[np.int32], NDArray[np.float16]]:
+        """Of pixels the nearest vertex and its distance; 0 and a great distance where none is near."""
+        wanted = y * self.width + x
+        if not len(self.places):
+            return np.zeros(wanted.shape, np.int32), np.full(wanted.shape, np.inf, np.float16)
+        found = np.minimum(np.searchsorted(self.places, wanted), len(self.places) - 1)
+        held = self.places[found] == wanted
+        return np.where(held, self.vertex[found], np.int32(0)), np.where(
+            held, self.distance_px[found], np.float16(np.inf)
+        )
 
 
 def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, width_px: float) -> Anchored:
@@ -62,10 +78,13 @@ def anchored(skeleton: Skeleton, corners: Points, shape: tuple[int, int], *, wid
 
 def nearest(vertices: Points, shape: tuple[int, int], *, within_px: float) -> Nearest:
     """The nearest vertex of every pixel that has one within that. vertices: (V, 2) in px. shape: (H, W) of the page."""
-    found = Nearest(np.zeros(shape, np.int32), np.full(shape, np.inf, np.float16))
+    parts = [(np.empty(0, np.intp), np.empty(0, np.int32), np.empty(0, np.float16))]
     for band, vertex, distance in _fields(vertices, shape, within_px):
-        found.vertex[band.own], found.distance_px[band.own] = vertex, distance
-    return found
+        away = distance.astype(np.float16).reshape(-1)
+        near = np.flatnonzero(away <= within_px)
+        parts.append((near + band.own.start * shape[1], vertex.reshape(-1)[near], away[near]))
+    places, names, away = (np.concatenate(some) for some in zip(*parts, strict=True))
+    return Nearest(shape[1], places, names, away)
 
 
 def nearest_at(

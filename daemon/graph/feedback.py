@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.components import components
 from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
 from daemon.ink import Mask
@@ -69,7 +70,7 @@ def rendering(vertices: Points, edges: Indices, shape: tuple[int, ...], *, width
 
 def blobs(difference: Mask) -> Points:
     """Bounding boxes of connected components, largest first, as (left, top, right, bottom), widened by a margin."""
-    stats = cv2.connectedComponentsWithStats(difference.view(np.uint8), connectivity=8)[2][1:].astype(np.float64)
+    stats = components(difference).stats[1:].astype(np.float64)
     stats = stats[stats[:, cv2.CC_STAT_AREA] >= _LEAST_AREA_PX]
     stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")][:_MOST_BOXES]
     corner = stats[:, :2]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bands import bands
+from daemon.components import components
 from daemon.graph.anchors import anchored
 from daemon.graph.skeleton import Indices, chain_points, chains, thinned
 from daemon.ink import Mask
@@ -88,10 +89,10 @@ def uncovered(ink: Mask, polylines: Sequence[Points], *, width_px: float) -> Mas
     for band in bands(len(ink), halo_px=beside_px + 1):
         away = cv2.distanceTransform(blank[band.seen], cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         bare[band.own] &= away[band.own_of_seen] > beside_px
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(bare.view(np.uint8), connectivity=8)
-    large = stats[:, 2:4].max(axis=1) > _LEAST_WIDTHS * width_px
+    pieces = components(bare)
+    large = pieces.stats[:, 2:4].max(axis=1) > _LEAST_WIDTHS * width_px
     large[0] = False
-    return np.asarray(large[labels])
+    return pieces.mapped(large)
 
 
 def _smoothed(polyline: Points) -> Points:

@@ -69,13 +69,14 @@ def suppressed(corners: Points, pairs: Indices, known: Indices, near: Nearest) -
     """
     samples = sampled(corners[pairs[:, 0]], corners[pairs[:, 1]], trim_px=0.0)
     x, y = np.rint(samples.points).astype(np.intp).T
-    between = near.vertex[y, x].astype(np.intp)
+    vertex, away_px = near.at(y, x)
+    between = vertex.astype(np.intp)
     p, r = pairs[samples.segment].T
-    hit = (near.distance_px[y, x] <= NEAR_PX) & (between != p) & (between != r)
+    hit = (away_px <= NEAR_PX) & (between != p) & (between != r)
     p, q, r, segment = p[hit], between[hit], r[hit], samples.segment[hit]
     ahead = _is_between(corners, p, q, r)
     keys = np.sort(known[:, 0] * len(corners) + known[:, 1])
-    through = near.distance_px[y, x][hit] <= _THROUGH_PX
+    through = away_px[hit] <= _THROUGH_PX
     joined = (through | (_known(p, q, keys, corners) & _known(q, r, keys, corners))) & ahead
     refused = np.zeros(len(pairs), bool)
     refused[segment[joined]] = True
@@ -93,8 +94,8 @@ def clear_of_corners(corners: Points, pairs: Indices, near: Nearest) -> NDArray[
     for share in _LOOKS:
         left = np.flatnonzero(clear & (lengths * min(share, 1 - share) > 1.0 + _THROUGH_PX))
         x, y = np.rint(start[left] + share * along[left]).astype(np.intp).T
-        between = near.vertex[y, x]
-        beside = (near.distance_px[y, x] <= _THROUGH_PX) & (between[:, None] != pairs[left]).all(axis=1)
+        between, away_px = near.at(y, x)
+        beside = (away_px <= _THROUGH_PX) & (between[:, None] != pairs[left]).all(axis=1)
         clear[left[beside]] = False
     return clear
 
@@ -114,9 +115,8 @@ def redundant(shape: tuple[int, ...], starts: Points, ends: Points, order: Indic
     segment, pixels = np.divmod(np.unique(samples.segment * area + np.stack([left, centre, right])), area)
     bounds = np.searchsorted(segment, np.arange(len(starts) + 1))
     last = np.append(samples.first[1:], len(centre))
-    covered, times = np.unique(pixels, return_counts=True)
-    cover = np.zeros(area, np.int32)
-    cover[covered] = times
+    covered, pixels, cover = np.unique(pixels, return_inverse=True, return_counts=True)
+    pixels, centre = pixels.reshape(-1), np.searchsorted(covered, centre)
     for index in order.tolist():
         if (cover[centre[samples.first[index] : last[index]]] >= 2).mean() >= _TWICE_SHARE:
             dropped[index] = True

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.components import components
 from daemon.ink import Mask, thin
 from daemon.shapes import Points
 
@@ -81,10 +81,7 @@ def junctions(skeleton: Skeleton) -> list[Indices]:
     members = np.flatnonzero(skeleton.degrees >= 3)
     if not members.size:
         return []
-    xs, ys = skeleton.pixels[members].T
-    canvas = np.zeros((ys.max() + 1, xs.max() + 1), np.uint8)
-    canvas[ys, xs] = 1
-    labels = cv2.connectedComponents(canvas, connectivity=8)[1][ys, xs]
+    labels = _labels(skeleton.pixels[members])
     order = np.argsort(labels, kind="stable")
     return np.split(members[order], np.flatnonzero(np.diff(labels[order])) + 1)
 
@@ -119,12 +116,17 @@ def rings(skeleton: Skeleton, owners: Indices) -> Indices:
     """One pixel of every connected part of the skeleton that no vertex owns a pixel of."""
     if not len(owners):
         return np.empty(0, np.intp)
-    xs, ys = skeleton.pixels.T
-    canvas = np.zeros((ys.max() + 1, xs.max() + 1), np.uint8)
-    canvas[ys, xs] = 1
-    labels = cv2.connectedComponents(canvas, connectivity=8)[1][ys, xs]
+    labels = _labels(skeleton.pixels)
     names, first = np.unique(labels, return_index=True)
     return np.asarray(first[~np.isin(names, labels[owners >= 0])], np.intp)
+
+
+def _labels(pixels: Indices) -> Indices:
+    """For each of the pixels, (N, 2), the connected part that it belongs to."""
+    xs, ys = pixels.T
+    canvas = np.zeros((ys.max() + 1, xs.max() + 1), bool)
+    canvas[ys, xs] = True
+    return components(canvas).at(ys, xs)
 
 
 def chain_points(skeleton: Skeleton, chain: Chain, vertices: Points) -> Points:

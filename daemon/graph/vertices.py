@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.components import components
 from daemon.ink import Mask
 from daemon.shapes import Map, Points
 
@@ -36,17 +37,15 @@ def corner_vertices(corners: Map, ink: Mask) -> Points:
     left out. Returns (V, 2) float64 in px, no two on one pixel. Discs are placed greedily: each where it lies on the
     component and explains the most pixels that no disc before it did.
     """
-    near = cv2.dilate(ink.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    blobs = ((corners > CORNER) & near).astype(np.uint8)
-    count, labels, stats, centres = cv2.connectedComponentsWithStats(blobs, connectivity=8)
+    near: Mask = np.asarray(cv2.dilate(ink.view(np.uint8), np.ones((3, 3), np.uint8))).view(np.bool_)
+    near &= corners > CORNER
+    blobs = components(near)
+    stats = blobs.stats
     areas = stats[:, cv2.CC_STAT_AREA]
     small = (areas <= _LARGEST_SINGLE_PX) & (stats[:, 2:4].max(axis=1) <= 6)
-    components = (areas >= _SMALLEST_PX) & (np.arange(count) > 0)
-    found = [np.asarray(centres[components & small], np.float64)]
-    for label in np.flatnonzero(components & ~small):
-        left, top, width, height = stats[label, :4]
-        blob = labels[top : top + height, left : left + width] == label
-        found.append(_discs(blob) + np.array([left, top]))
+    sound = (areas >= _SMALLEST_PX) & (np.arange(len(stats)) > 0)
+    found = [blobs.centres[sound & small]]
+    found += [_discs(blobs.piece(label)) + stats[label, :2] for label in np.flatnonzero(sound & ~small).tolist()]
     return distinct(np.concatenate(found))
 
 

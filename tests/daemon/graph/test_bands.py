@@ -15,9 +15,9 @@ SHAPE = (2 * BAND_PX + 100, 60)
 def test_the_nearest_vertex_may_lie_in_the_next_band() -> None:
     vertices = np.array([[30.0, BAND_PX - 2.0], [10.0, 2.0 * BAND_PX + 1.0]])
     near = nearest(vertices, SHAPE, within_px=5.0)
-    assert near.vertex[BAND_PX + 2, 30] == 0
-    assert near.distance_px[BAND_PX + 2, 30] == 4
-    assert near.distance_px[2 * BAND_PX - 1, 10] == 2
+    vertex, away_px = near.at(np.array([BAND_PX + 2, 2 * BAND_PX - 1, 50]), np.array([30, 10, 30]))
+    assert vertex.tolist() == [0, 1, 0]
+    assert away_px.tolist() == [4.0, 2.0, np.inf]
     owner, distance = nearest_at(vertices, np.array([[30, BAND_PX + 2], [10, 2 * BAND_PX - 1]]), SHAPE, within_px=5.0)
     assert owner.tolist() == [0, 1]
     assert distance.tolist() == [4.0, 2.0]
