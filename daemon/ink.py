@@ -69,6 +69,7 @@ def thin(mask: Mask) -> Mask:
         now, later = np.concatenate([later[flat[later] == _INK], changed]), changed
         flat[changed] = _INK
         even = 1 - even
+    del codes
     return np.ascontiguousarray(ink[1:-1, 1:-1]).view(np.bool_)
 
 

@@ -55,8 +55,11 @@ def fidelity(page: PageImage, strokes: Sequence[Points], *, line_width_px: float
     f1 = 2 * precision * recall / (precision + recall) if precision + recall else 0.0
     drawn = within(strokes, ink.shape, line_width_px / 2)
     overlap = _overlap(ink, drawn)
-    not_on_ink = places(_without(drawn, grown_ink), longer_than_px=2 * line_width_px)
-    not_drawn = places(_without(ink, _grown(drawn)), longer_than_px=2 * line_width_px)
+    not_on_ink = places(np.greater(drawn, grown_ink, out=grown_ink), longer_than_px=2 * line_width_px)
+    del grown_ink
+    beside = _grown(drawn)
+    del drawn
+    not_drawn = places(np.greater(ink, beside, out=beside), longer_than_px=2 * line_width_px)
     return Fidelity(precision, recall, f1, overlap, not_drawn, not_on_ink)
 
 
@@ -105,10 +108,6 @@ def _overlap(ink: Mask, drawn: Mask) -> float:
     common = np.count_nonzero(ink & drawn)
     union = np.count_nonzero(ink) + np.count_nonzero(drawn) - common
     return common / union if union else 1.0
-
-
-def _without(mask: Mask, other: Mask) -> Mask:
-    return np.asarray(np.greater(mask, other))
 
 
 def _grown(mask: Mask) -> Mask:
