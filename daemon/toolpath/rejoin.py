@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.shapes import Points, Stroke
-from daemon.toolpath.doors import Near, nearest_doors
+from daemon.toolpath.doors import Near
 from daemon.toolpath.order import Place, travel_mm, turn_closed
 from daemon.toolpath.simplify import shared_points
 from daemon.toolpath.tour import Tour
@@ -59,18 +59,17 @@ class _Pieces(Tour):
     def __init__(self, pieces: list[Stroke], nodes: list[int], start: Place, end: Place | None) -> None:
         ends = np.array([[piece.points[0], piece.points[-1]] for piece in pieces]).reshape(-1, 2)
         doors = np.concatenate([ends, np.array([end or start, start], float)])
-        super().__init__(doors)
+        super().__init__(doors, neighbours=_NEIGHBOURS)
         self._nodes = [*nodes, len(nodes), len(nodes) + 1]
         self._free = len(nodes) if end is None else -1
         self._along = [*_directions(pieces), (0.0, 0.0), (0.0, 0.0)]
         self._at_node: dict[int, list[int]] = {}
         for door, node in enumerate(nodes):
             self._at_node.setdefault(node, []).append(door)
-        near = nearest_doors(doors, _NEIGHBOURS)
         self._bend_mm = 0.0
-        self._unbent = self._costs(near)
+        self._unbent = self._costs(self.near)
         self._bend_mm = _BEND_MM
-        self._bent = self._costs(near)
+        self._bent = self._costs(self.near)
 
     def shorten(self) -> None:
         """Settle, then try turns at crossings and keep those that save travel."""

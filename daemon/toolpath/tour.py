@@ -51,9 +51,9 @@ class Tour:
 
     __slots__ = ("at", "moves", "near", "places", "ring")
 
-    def __init__(self, doors: NDArray[np.float64]) -> None:
+    def __init__(self, doors: NDArray[np.float64], *, neighbours: int = _NEIGHBOURS) -> None:
         self.places: list[tuple[float, ...]] = [*map(tuple, doors.tolist())]
-        self.near = nearest_doors(doors, _NEIGHBOURS)
+        self.near = nearest_doors(doors, neighbours)
         self.ring = list(range(0, len(doors), 2))
         self.at = list(range(len(self.ring)))
         self.moves: list[tuple[int, int, int, int]] = []
