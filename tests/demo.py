@@ -25,7 +25,9 @@ import numpy as np
 
 from daemon.config import Options, Settings, load_settings
 from daemon.errors import LinedrawError
-from daemon.intake.decode import decode
+from daemon.homography import through
+from daemon.intake.picture import open_picture
+from daemon.intake.vector.sheet import VectorPage
 from daemon.jobs.folder import source_of
 from daemon.jobs.states import OVER, State
 from daemon.report import canvas
@@ -157,7 +159,7 @@ def line_of(settings: Settings, job: Seen) -> str:
         return f"{job.state.value:<12}{job.name:<28}{job.words}"
     report = from_json((settings.paths.jobs / job.id / "report.json").read_text())
     took = in_words(report.real_s if report.real_s is not None else report.estimated_s)
-    fidelity = f"{report.fidelity_of} f1 {report.fidelity.f1:.3f}"
+    fidelity = "" if report.fidelity is None else f"{report.fidelity_of} f1 {report.fidelity.f1:.3f}"
     return f"{job.state.value:<12}{job.name:<28}{report.strokes:>5} strokes{took:>14}   {fidelity}"
 
 
@@ -169,14 +171,14 @@ def row_of(settings: Settings, job: Seen) -> Row:
         return Row(job.name, given, [], [], trouble=job.words)
     report = from_json((folder / "report.json").read_text())
     planned = json.loads((folder / "strokes.json").read_text())
-    to_px = invert(np.array(report.from_px))
+    to_px, to_given = invert(np.array(report.from_px)), np.array(report.to_given)
     ink = json.loads((folder / "ink.json").read_text())
     return Row(
         job.name,
         given,
         [np.array(stroke, float) for stroke in planned["strokes"]],
-        [place(np.array(stroke, float), to_px) for stroke in ink["strokes"]],
-        f1=report.fidelity.f1,
+        [through(to_given, place(np.array(stroke, float), to_px)) for stroke in ink["strokes"]],
+        f1=None if report.fidelity is None else report.fidelity.f1,
         seconds=report.real_s,
         line_width_px=report.line_width_px,
     )
@@ -187,7 +189,9 @@ def as_given(folder: Path) -> canvas.Picture:
     source = source_of(folder)
     try:
         if source is not None:
-            return np.asarray(cv2.cvtColor(decode(source).grey, cv2.COLOR_GRAY2BGR), np.uint8)
+            seen = open_picture(source)
+            grey = seen.page.grey if isinstance(seen, VectorPage) else seen.grey
+            return np.asarray(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR), np.uint8)
     except LinedrawError:
         pass
     return canvas.blank(200, 200, canvas.FRAME)
