@@ -1,6 +1,6 @@
 """The gallery, from the daemon with a simulated plotter and no settings: `python -m tests.gallery [docs]`.
 
-Writes gallery.md and gallery/*.jpg into the folder, in some ten minutes. The seconds are those of the simulated plotter.
+Writes gallery.md and gallery/*.jpg into the folder, in some ten minutes. The seconds are the simulated plotter's.
 """
 
 from __future__ import annotations

@@ -110,7 +110,7 @@ _WORN = {
 _HARD = {
     "Drawn over, drawn close": (
         _of_set("overdrawn.png", "Each line drawn twice, the passes touching.", overdrawn.overdrawn, 14),
-        _of_set("apart.png", "Each line drawn twice, paper between them: one line is drawn, as a person would trace it.",
+        _of_set("apart.png", "Each line drawn twice, paper between them: one line is drawn, as people trace it.",
                 overdrawn.apart, 14),
         _own("hatch.png", "Shading by parallel lines."),
     ),
