@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from daemon.config import Options, Settings, load_settings
+from daemon.errors import SettingsError
 from daemon.intake.pages import count_pages
 from daemon.places import usual_file
 
@@ -54,8 +55,10 @@ def add_page(parser: argparse.ArgumentParser) -> None:
 
 
 def page_of(args: argparse.Namespace, picture: Path) -> int:
-    """The page that is wanted. Where nobody has said one says on stderr that there are others."""
+    """The page that is wanted. Where nobody has said one says on stderr that there are others. Raises SettingsError."""
     if args.page is not None:
+        if args.page < 1:
+            raise SettingsError("pages are counted from 1: give --page 1 or more")
         return int(args.page)
     pages = count_pages(picture)
     if pages > 1:

@@ -13,6 +13,8 @@ from pathlib import Path
 import daemon
 
 MOST_PAGES = 100
+UNCOUNTED = 0
+"""The page of a document of which nobody knows how many pages it has."""
 _HEAD = re.compile(rb"II\*\0|MM\0\*|.{0,1019}%PDF-", re.DOTALL)
 _HEAD_BYTES = 1024
 _ROOT = Path(daemon.__file__).parent.parent
@@ -21,29 +23,33 @@ _MEMORY_MB = 1024
 
 
 def count_pages(path: Path) -> int:
-    """The pages of a PDF or TIFF file; 1 for what is none, and where that cannot be found out.
+    """The pages of a PDF or TIFF file, 1 of what is none; UNCOUNTED where counting took too long or too much memory.
 
     A document that is damaged, encrypted or has more than MOST_PAGES is one job, which fails and says why.
     """
     if not _HEAD.match(_head(path)):
         return 1
     try:
-        said = subprocess.run(
+        counted = subprocess.run(
             [sys.executable, "-m", "daemon.intake.pages", str(path.absolute())],
-            cwd=_ROOT, stdin=subprocess.DEVNULL, capture_output=True, timeout=_WITHIN_S, check=True,
+            cwd=_ROOT, stdin=subprocess.DEVNULL, capture_output=True, timeout=_WITHIN_S, check=False,
         )  # fmt: skip
-        return int(said.stdout)
-    except (OSError, ValueError, subprocess.SubprocessError):
-        return 1
+    except (OSError, subprocess.TimeoutExpired):
+        return UNCOUNTED
+    if counted.returncode < 0:
+        return UNCOUNTED
+    return int(counted.stdout) if counted.returncode == 0 else 1
 
 
 def checked_page(page: int, pages: int) -> int:
-    """The page, from 1 on, of a document of so many. Raises ValueError."""
+    """The page, from 1 on, of a document of so many; UNCOUNTED is the only one. Raises ValueError."""
     if pages > MOST_PAGES:
         raise ValueError(f"has {pages} pages, at most {MOST_PAGES} are drawn: split it")
-    if not 1 <= page <= pages:
+    if page == UNCOUNTED and pages > 1:
+        raise ValueError(f"has {pages} pages, which took too long to be counted: drop it again")
+    if page > pages:
         raise ValueError(f"has {'1 page' if pages == 1 else f'{pages} pages'}, there is no page {page}")
-    return page
+    return max(page, 1)
 
 
 def _head(path: Path) -> bytes:

@@ -17,7 +17,8 @@ class Arrival:
 
     inbox: the machine whose inbox it came by, "" for that of all. machine: the one that shall draw it, "" for any.
     twin: the job of the same picture because of which this one is not drawn; "" where it is.
-    pages: of the document, a job each. page: the one that this job draws, from 1 on.
+    pages: of the document, a job each. page: the one that this job draws, from 1 on; with several, or with copies, the
+    first of them.
     """
 
     name: str
@@ -33,13 +34,13 @@ class Arrival:
     @property
     def called(self) -> str:
         """What people call it."""
-        return self.name if self.pages == self.page == 1 else f"{self.name} page {self.page}"
+        return self.name if self.pages == 1 and self.page <= 1 else f"{self.name} page {self.page}"
 
     def jobs(self) -> list[Arrival]:
         """One for each job that is made of it, page by page, then the next copy; of a copy only itself."""
-        if self.copy_of or self.pages * self.copies == 1:
+        if self.copy_of:
             return [self]
-        return [replace(self, page=page) for page in range(1, self.pages + 1)] * self.copies
+        return [replace(self, page=self.page + more) for more in range(self.pages)] * self.copies
 
     def copy(self, job: str) -> Arrival:
         """The same page of the same picture as a job that stands for itself, made of this one."""

@@ -6,12 +6,13 @@ import hashlib
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from daemon.config import Settings
 from daemon.errors import DiskTrouble, SettingsError
 from daemon.intake.inbox import readable
-from daemon.intake.pages import count_pages
+from daemon.intake.pages import UNCOUNTED, count_pages
 from daemon.intake.side import Wishes, parse, read_bytes
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
 from daemon.jobs.desk import Desk
@@ -52,7 +53,9 @@ class Arrivals:
         copies, pages = (1, 1) if twin else (wishes.copies, self._pages(picture))
         side, machine = beside.name if beside else "", wishes.machine or inbox
         # The twin too, before the picture is taken: whoever finds it after a cut must not draw it again.
-        arrival = Arrival(name, side, copies, inbox=inbox, machine=machine, twin=twin, pages=pages)
+        arrival = Arrival(name, side, copies, inbox=inbox, machine=machine, twin=twin)
+        # Of one whose pages nobody knows none is left out in silence: it fails where it has several.
+        arrival = replace(arrival, pages=pages) if pages else replace(arrival, page=UNCOUNTED)
         files = {ARRIVAL_NAME: arrival.encoded()}
         if beside:
             files[SIDE_NAME] = said

@@ -38,12 +38,17 @@ def test_where_none_is_said_the_first_is_taken_and_the_others_are_told_of(
 
 
 @pytest.mark.parametrize(
-    ("page", "words"), [("4", "has 3 pages, there is no page 4"), ("0", "no page 0"), ("3", "holds no line to draw")]
+    ("page", "words"),
+    [
+        ("4", "has 3 pages, there is no page 4"),
+        ("0", "pages are counted from 1: give --page 1 or more"),
+        ("3", "holds no line to draw"),
+    ],
 )
 def test_a_page_that_is_not_there_or_empty_is_refused(
     book: Path, page: str, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["preview", str(book), "--page", page, "-o", "/nonexistent/look.html"]) == 1
+    assert main(["preview", str(book), "--page", page, "-o", "/nonexistent/look.html"]) != 0
     assert words in capsys.readouterr().err
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import signal
 import struct
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -11,7 +13,7 @@ import pytest
 from daemon.errors import BadPicture
 from daemon.intake import pages
 from daemon.intake.decode import decode
-from daemon.intake.pages import MOST_PAGES, count_pages
+from daemon.intake.pages import MOST_PAGES, UNCOUNTED, count_pages
 from tests.daemon.intake import files
 from tests.daemon.intake.vector.pdfs import ENCRYPTED, pdf
 
@@ -111,6 +113,24 @@ def test_what_can_have_no_pages_is_not_opened_by_anybody(tmp_path: Path, monkeyp
     assert [count_pages(tmp_path / name) for name in ("link", "pipe", "gone")] == [1, 1, 1]
 
 
-def test_a_count_that_takes_too_long_is_broken_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_count_that_takes_too_long_is_broken_off_and_told_from_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(pages, "_WITHIN_S", 0.001)
-    assert counted(tmp_path, pdf(["", ""])) == 1
+    assert counted(tmp_path, pdf(["", ""])) == UNCOUNTED
+
+
+def test_a_count_that_is_killed_for_its_memory_is_told_from_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    killed = subprocess.CompletedProcess[bytes]([], -signal.SIGABRT, b"")
+    monkeypatch.setattr(pages.subprocess, "run", lambda *args, **options: killed)
+    assert counted(tmp_path, pdf(["", ""])) == UNCOUNTED
+
+
+def test_of_an_uncounted_document_no_page_is_left_out_in_silence(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(book(0))
+    assert decode(tmp_path / "a", page=UNCOUNTED).grey.shape == (1, 1)
+    (tmp_path / "a").write_bytes(book(0, 0))
+    with pytest.raises(BadPicture, match="has 2 pages, which took too long to be counted: drop it again"):
+        decode(tmp_path / "a", page=UNCOUNTED)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from daemon.config import Keep
+from daemon.intake.pages import UNCOUNTED
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in, keep_page, page_in
 from daemon.jobs.choices import Choices
 from daemon.jobs.folder import source_of
@@ -111,6 +112,14 @@ def test_again_draws_the_same_page_alone_also_when_the_power_is_cut_behind_it(tm
     intake = Intake(tmp_path, pages=PAGES)
     intake.recover()
     assert told(intake)[PAGES:] == [(NAMES[1], 2)] * 2
+
+
+def test_each_copy_of_a_document_that_nobody_could_count_knows_that(tmp_path: Path) -> None:
+    intake = Intake(tmp_path, pages=UNCOUNTED)
+    drop(intake.inbox, "plan.pdf")
+    drop(intake.inbox, "plan.toml", WISHES)
+    take(intake)
+    assert told(intake) == [("plan.pdf", UNCOUNTED)] * 2
 
 
 def test_a_document_that_comes_again_is_dropped_as_one(tmp_path: Path) -> None:
