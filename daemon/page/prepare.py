@@ -14,6 +14,7 @@ from daemon.page.overdrawn import merge_overdrawn
 from daemon.page.photograph import warned_of_photograph
 from daemon.page.ruling import take_off_ruling
 from daemon.page.sheet import straighten
+from daemon.page.skew import level
 from daemon.page.working_range import warned_of_contrast, warned_of_size
 from daemon.shapes import PageImage
 
@@ -32,7 +33,8 @@ def put_right(page: PageImage) -> PageImage:
 
     `to_given` leads back to the given picture. A clean page comes back as it is, bit by bit.
     """
-    bare = take_off_ruling(warned_of_photograph(even_light(turn_dark(straighten(page)))))
+    upright = level(warned_of_photograph(even_light(turn_dark(straighten(page)))))
+    bare = take_off_ruling(upright)
     return clean_paper(spread_tones(warned_of_contrast(bare)))
 
 
