@@ -111,8 +111,12 @@ class Service:
         button, stations = self._settings.button, self._parts.desk.stations
         if button.does == "scan":
             self._scanning.scan()
+            return
+        station = stations[button.machine or next(iter(stations))]
+        if station.changes_pen:
+            self._parts.runner.resume(station.name)
         else:
-            stations[button.machine or next(iter(stations))].pressed()
+            station.pressed()
 
     def run(self) -> bool:
         """True when it ended because it was told to."""

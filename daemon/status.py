@@ -28,7 +28,7 @@ class MachineStatus:
     """What is told of one machine. `state` is one word, `reason` why it is so, `words` a sentence; seconds come
     from its time model.
 
-    ink_m: metres that the pen has drawn; pen: says that it is worn.
+    ink_m: metres that the pen has drawn; pen: says that it is worn. pen_in: what the pen is called that must be in.
     """
 
     state: str = "starting"
@@ -46,6 +46,7 @@ class MachineStatus:
     feed_percent: int = 100
     ink_m: float = 0.0
     pen: str = ""
+    pen_in: str = ""
 
 
 @dataclass(frozen=True, slots=True)

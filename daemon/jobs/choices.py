@@ -14,6 +14,7 @@ from daemon.jobs.journal import UNTOLD, Job
 from daemon.jobs.states import Reason, State
 from daemon.jobs.station import Station
 from daemon.jobs.wishes import SIDE_NAME
+from daemon.program.file import load_program
 from daemon.shapes import Program, ProgramLine
 
 _FROM_NAME = "from_stroke"
@@ -89,7 +90,16 @@ class Choices:
         write_durably(self._desk.folders.path(job.id) / _FROM_NAME, str(stroke).encode())
         self._desk.step(job.id, State.WAITING, f"a person has it go on from stroke {stroke}")
         station.go()
-        return f"job {job.id} goes on from stroke {stroke}"
+        return f"job {job.id} goes on from stroke {stroke}{_pen_at(self._desk.folders.path(job.id), stroke)}"
+
+
+def _pen_at(folder: Path, stroke: int) -> str:
+    """In words, which pen must be in; "" where pens have no names, or nobody knows."""
+    try:
+        pen = load_program(folder / "program.gcode").pen_of(stroke)
+    except LinedrawError:
+        return ""
+    return f": put the {pen} pen in first" if pen else ""
 
 
 def not_placed(station: Station) -> str:

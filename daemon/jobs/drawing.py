@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from daemon.errors import LinedrawError, MachineFault, NoMachine
@@ -14,6 +14,7 @@ from daemon.jobs.kept_ink import Reports, add_to_report, keep_ink
 from daemon.jobs.moves import Moves, homing
 from daemon.jobs.open_machine import InkMm, Open, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
+from daemon.jobs.passes import Passes
 from daemon.jobs.progress import NOTHING_DRAWN, Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
 from daemon.jobs.retry import IDLE_S, retry_after_s
@@ -54,6 +55,7 @@ class Drawing:
         self._machine: OpenMachine | None = None
         self._now, self._placed = now, False
         self._progress: Progress | None = None
+        self._passes: Passes | None = None
         self._drawn = ""
         """The job that is being drawn."""
         self.missing: NoMachine | MachineFault | None = None
@@ -222,6 +224,7 @@ class Drawing:
             return
         times_s = self._machine.line_times_s(program)
         self._drawn = job.id
+        self._passes = Passes(self.station, job.id, program, self._machine.take_ink)
         self._progress = Progress(self.station.show, program, times_s, now=self._machine.now)
         self.station.show(state="drawing", words="", job=job.id, picture=job.name, strokes_total=program.strokes)
         begun_s = self._machine.now()
@@ -250,11 +253,12 @@ class Drawing:
 
     def _record(self, job: Job, program: Program, ended: Ended, *, real_s: float) -> None:
         assert self._machine is not None
-        port, ink = self._machine.name, self._machine.take_ink()
+        assert self._passes is not None
+        port, (ink, pens) = self._machine.name, self._passes.ink()
         known = ended.verdict in _PORT_STAYS_OPEN and ended.position_known
         if not known:
             self._give_back()
-        self._report(job, ink, real_s)
+        self._report(job, ink, pens, real_s)
         self._inked(self._desk.folders.path(job.id), ended.strokes_certain)
         cancelled = self._desk.is_cancelled(job.id)
         goes_on_knowing, touched = known and not self._desk.ending, ended.strokes_possible > 0
@@ -270,14 +274,14 @@ class Drawing:
         self.close()
         self.station.show(port="", firmware="")
 
-    def _report(self, job: Job, ink: InkMm | None, real_s: float) -> None:
+    def _report(self, job: Job, ink: InkMm | None, pens: Sequence[str], real_s: float) -> None:
         """The seconds into report.json, the ink beside it, and have it measured. A job does not fail for its report."""
         folder = self._desk.folders.path(job.id)
         try:
             self._reports.whole(folder)
             add_to_report(folder / "report.json", real_s)
             if ink is not None:
-                keep_ink(folder, ink, more=job.possible > 0)
+                keep_ink(folder, ink, pens, more=job.possible > 0)
             if ink is not None and not self._desk.ending:
                 self._reports.measure(folder)
         except (LinedrawError, ValueError) as error:
@@ -286,6 +290,8 @@ class Drawing:
     def _hear(self, event: Event) -> None:
         if self._progress:
             self._progress.hear(event)
+        if self._passes:
+            self._passes.hear(event)
         if isinstance(event, Paused | Resumed) or (isinstance(event, Waiting) and event.cause):
             stand(event, self._drawn, self.station)
         elif not isinstance(event, Accepted):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,11 +23,16 @@ class Reports:
     measure: Callable[[Path], None]
 
 
-def keep_ink(folder: Path, ink: InkMm, *, more: bool) -> None:
-    """Write ink.json. more: behind what an earlier part of the drawing has left. Raises DiskTrouble, ValueError."""
+def keep_ink(folder: Path, ink: InkMm, pens: Sequence[str] = (), *, more: bool) -> None:
+    """Write ink.json. more: behind what an earlier part of the drawing has left. Raises DiskTrouble, ValueError.
+
+    pens: what the pen of each line is called, where they have names.
+    """
     path = folder / "ink.json"
-    before: InkMm = json.loads(path.read_text(encoding="utf-8"))["strokes"] if more and path.exists() else []
-    write_durably(path, json.dumps({"strokes": [*before, *ink]}).encode())
+    before = json.loads(path.read_text(encoding="utf-8")) if more and path.exists() else {"strokes": []}
+    kept = {"strokes": [*before["strokes"], *ink]}
+    kept |= {"pens": [*before.get("pens", ()), *pens]} if pens else {}
+    write_durably(path, json.dumps(kept).encode())
 
 
 def add_to_report(path: Path, real_s: float) -> None:

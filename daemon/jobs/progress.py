@@ -21,6 +21,7 @@ NOTHING_DRAWN: Mapping[str, Any] = {
     "percent": 0.0,
     "seconds_left": None,
     "feed_percent": 100,
+    "pen_in": "",
 }
 """What the status says between two drawings."""
 

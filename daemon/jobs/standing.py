@@ -57,6 +57,9 @@ def _step(desk: Desk, job_id: str, state: State, reason: Reason, words: str) -> 
 
 def _what(event: Stand, station: Station) -> tuple[State, Reason, str]:
     match event:
+        case Paused(change=True, also=also):
+            words = f"put the {station.pen_in} pen in, {f'{also}, ' if also else ''}then {station.command('resume')}"
+            return State.PAUSED, Reason.PEN_CHANGE, words
         case Paused(stroke=stroke):
             where = "" if stroke is None else f" before stroke {stroke}"
             words = _PAUSED.format(where=where, resume=station.command("resume"), stop=station.command("stop"))

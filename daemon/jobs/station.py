@@ -11,7 +11,7 @@ from daemon.errors import DiskTrouble
 from daemon.jobs.desk import GONE, Desk
 from daemon.jobs.journal import Job
 from daemon.jobs.record import write_record
-from daemon.jobs.states import UNDER_THE_PEN, State
+from daemon.jobs.states import UNDER_THE_PEN, Reason, State
 
 
 class Station:
@@ -37,6 +37,8 @@ class Station:
         """It has asked for a job, and there was none for it."""
         self.missing = False
         """There is no machine, or none that can begin."""
+        self.pen_in = ""
+        """What the pen is called that must be in; "" where it has no name."""
         desk.stations[name] = self
 
     @property
@@ -140,6 +142,12 @@ class Station:
                 if self.desk.station(job.machine) is self:
                     self.desk.step(job.id, State.WAITING, words)
             self.show(state="waiting", words=words)
+
+    @property
+    def changes_pen(self) -> bool:
+        """Its drawing waits for another pen."""
+        job = self._under_the_pen()
+        return job is not None and job.reason is Reason.PEN_CHANGE
 
     def new_sheet(self) -> None:
         self.desk.journal.new_sheet(self.name)
