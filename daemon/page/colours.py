@@ -17,12 +17,14 @@ from daemon.shapes import Colours, Drawing, PageImage, Points, Stroke
 
 _STEP_PX, _DISC_SHARE = 1.5, 0.3
 """Along a line it is looked so often, in a disc of this share of its width."""
+_LEAST_REACH_PX = 1.0
+"""Of the colours, which a JPEG keeps half as finely as its greys."""
 _LOOK_PX, _MARK_SHARE = 384, 10
 """Paper is looked at on the picture made so small; a mark wider than this share of its side is paper."""
 _DARK = 128
 _SURE_LAB = 40.0
 """A line that is so far from the colour of a pen is as little its as any."""
-_TOWARDS_FULL = 0.1
+_TOWARDS_FULL = 0.05
 """Where two pens have colours of one tone, the one whose full colour is nearer has it."""
 _CHANGE_WIDTHS = 1.5
 """What a change of pen costs: so much of a line, in its widths, of surely another colour; twice that for a crossing."""
@@ -52,7 +54,7 @@ class _Look:
     def __init__(self, page: PageImage, colour: Colours, pens: Sequence[Rgb]) -> None:
         self.width_px = page.line_width_px or 1.0
         self._page, self._colour, self._shrunk = page, colour, colour.shape[1] / page.given_width_px
-        reach = _DISC_SHARE * self.width_px * given_px(page) * self._shrunk
+        reach = max(_LEAST_REACH_PX, _DISC_SHARE * self.width_px * given_px(page) * self._shrunk)
         self._disc = reach * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
         self._light = _light(colour)
         dark = float(np.median(self._light)) * 255 < _DARK
