@@ -22,7 +22,7 @@ from tests.daemon.intake.buttons import DOWN, ENTER, SPACE, key
 from tests.daemon.intake.scans import fake_on_path
 from tests.daemon.test_service import running
 
-SIMULATED = "url = 'sim://grbl?speed=25'\nsheet = 'ask'\n"
+SIMULATED = "url = 'sim://grbl'\nsheet = 'ask'\n"
 BOTH = f"[machines.left]\n{SIMULATED}[machines.right]\n{SIMULATED}"
 
 
