@@ -8,6 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bands import bands
+from daemon.remembered import remembered
 from daemon.shapes import Grey
 
 Mask: TypeAlias = NDArray[np.bool_]
@@ -37,14 +39,15 @@ def ink_mask(grey: Grey) -> Mask:
     return np.zeros(grey.shape, bool) if threshold is None else grey <= threshold
 
 
+@remembered
 def ink_threshold(grey: Grey) -> float | None:
     """Grey level at and below which a pixel is ink, None where the page holds none. See `ink_mask`."""
     if grey.size == 0:
         return None
-    # A row at a time: bincount makes eight bytes of each pixel first.
     histogram = np.zeros(256)
-    for row in grey:
-        histogram += np.bincount(row, minlength=256)
+    # A band at a time: OpenCV counts in float32, which is exact up to 2 ** 24.
+    for band in bands(len(grey)):
+        histogram += cv2.calcHist([grey[band.own]], [0], None, [256], [0, 256]).ravel()
     paper, grain = _paper(histogram, _otsu(histogram))
     darkness = np.where(np.arange(256) < paper - max(LEAST_CONTRAST, _NOISES * grain), histogram, 0.0).cumsum()
     if not darkness[-1]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.page.tones import Tones, tones
+from daemon.remembered import remembered
 from daemon.shapes import Grey, Homography, PageImage
 
 BEST_PX = 2.5
@@ -42,6 +43,7 @@ def fit_line_width(page: PageImage) -> PageImage:
     return replace(_scaled(page, scale), line_width_px=width_px * scale)
 
 
+@remembered
 def line_width_px(grey: Grey) -> float | None:
     """Full width of the pen's line in px, None where the page holds no ink.
 

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from daemon.ink import ink_threshold
+from daemon.remembered import remembered
 from daemon.shapes import Grey
 
 _SAMPLE_PX = 1 << 20
@@ -27,6 +28,7 @@ class Tones:
     grain: float
 
 
+@remembered
 def tones(grey: Grey) -> Tones | None:
     """grey: uint8 (H, W). None where the page holds no ink. Of a large page about a million pixels are looked at."""
     sample = _sample(grey)
