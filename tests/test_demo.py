@@ -19,6 +19,8 @@ from daemon.toolpath.place import Layout, placement
 from tests.demo import DRAWINGS, Seen, drop, line_of, main, row_of, seen_jobs
 
 LINE = np.array([[10.0, 20.0], [110.0, 20.0]])
+TO_GIVEN = np.array([[2.0, 0, 5], [0, 2, 7], [0, 0, 1]])
+"""The page lies twice as large in the given picture, and not in its corner."""
 
 
 @pytest.fixture
@@ -27,18 +29,21 @@ def settings(tmp_path: Path) -> Settings:
 
 
 def drawn_job(settings: Settings) -> Seen:
-    """A job's folder as the daemon leaves it: a page of 128 x 64 px, half a millimetre a pixel in the usual box."""
+    """A job's folder as the daemon leaves it: a page of 128 x 64 px, half a millimetre a pixel in the usual box.
+
+    The page is a part of the given picture.
+    """
     folder = settings.paths.jobs / "000001-line"
     folder.mkdir(parents=True)
     grey = np.full((64, 128), 255, np.uint8)
-    cv2.imwrite(str(folder / "source.png"), grey)
+    cv2.imwrite(str(folder / "source.png"), np.full((160, 300), 255, np.uint8))
     (folder / "strokes.json").write_text(
-        json.dumps({"width_px": 128, "height_px": 64, "px_per_mm": None, "strokes": [LINE.tolist()]})
+        json.dumps({"width_px": 300, "height_px": 160, "px_per_mm": None, "strokes": [(2 * LINE + [5, 7]).tolist()]})
     )
     # The box is 64 mm wide at (25, 25); the page fills its middle, its upper edge 16 mm below the box's.
     ink_mm = [[25 + 0.5 * 10.5, 89 - 16 - 0.5 * 20.5], [25 + 0.5 * 110.5, 89 - 16 - 0.5 * 20.5]]
     (folder / "ink.json").write_text(json.dumps({"strokes": [ink_mm]}))
-    page = PageImage(grey, np.eye(3), 128, 64, "")
+    page = PageImage(grey, TO_GIVEN, 300, 160, "")
     from_px = placement(128, 64, Layout(settings.sheet.box_mm, settings.sheet.box_origin_mm))
     toolpath = Toolpath((Stroke(LINE),), from_px)
     figures = Fidelity(1.0, 0.9, 0.947, 0.8)
@@ -70,7 +75,7 @@ def test_jobs_are_read_while_the_journal_is_open(tmp_path: Path) -> None:
     journal.close()
 
 
-def test_ink_comes_back_to_the_pixels_it_was_planned_from(settings: Settings) -> None:
+def test_ink_comes_back_to_the_pixels_of_the_given_picture_that_it_was_planned_from(settings: Settings) -> None:
     row = row_of(settings, drawn_job(settings))
     np.testing.assert_allclose(row.drawn[0], row.understood[0], atol=1e-9)
     assert (row.f1, row.seconds, row.line_width_px) == (0.947, 83.0, 2.0)
