@@ -52,7 +52,7 @@ def picture(side_px: int = SIDE_PX, width_px: float = WIDTH_PX, *, pens: dict[st
     for pen, points in strokes(side_px):
         share = inked([points], (side_px, side_px), width_px=width_px)[..., None]
         seen = seen * (1 - share) + share * bgr(pens[pen])
-    return np.rint(seen).astype(np.uint8)
+    return np.asarray(np.rint(seen), np.uint8)
 
 
 def photographed(clean: Colours, *, seed: int = 1) -> Colours:

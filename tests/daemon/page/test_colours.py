@@ -49,7 +49,7 @@ def right_share(found: Drawing, truth: list[tuple[str, Points]], within_px: floa
 @pytest.mark.parametrize(
     ("side_px", "worn", "least"),
     [
-        (200, False, 0.99),
+        (300, False, 0.99),
         (600, False, 0.99),
         (1200, False, 0.99),
         (300, True, 0.95),
@@ -71,7 +71,9 @@ def bar(*lines: tuple[str, tuple[float, float], tuple[float, float]], width_px: 
     seen = np.full((200, 200, 3), 255, np.uint8)
     for colour, start, end in lines:
         red, green, blue = rgb_of(colour) or (0, 0, 0)
-        cv2.line(seen, np.rint(start).astype(int), np.rint(end).astype(int), (blue, green, red), width_px, cv2.LINE_AA)
+        (x, y), (end_x, end_y) = start, end
+        places = (round(x), round(y)), (round(end_x), round(end_y))
+        cv2.line(seen, *places, (blue, green, red), width_px, cv2.LINE_AA)
     return seen
 
 

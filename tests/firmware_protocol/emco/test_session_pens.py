@@ -27,8 +27,7 @@ def in_two_pens(dialect: DialectName) -> list[Line]:
 
 
 def changing(on: Callable[..., Bench], dialect: DialectName) -> Bench:
-    link = "xonxoff" if on is on_xonxoff else "blocks"
-    bench = on(EmcoSimulator(Setup(DIALECTS[dialect], link)))
+    bench = on(EmcoSimulator(Setup(DIALECTS[dialect], "xonxoff" if on is on_xonxoff else "blocks")))
     bench.session.start(in_two_pens(dialect), bench.now)
     wait(bench, State.PAUSED)
     return bench

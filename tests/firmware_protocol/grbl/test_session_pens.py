@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from firmware_protocol.grbl.states import State
@@ -20,7 +22,7 @@ def in_two_pens() -> list[Line]:
     return [*lines[:first], PARK, Line("M0", 1), *lines[first:]]
 
 
-def changing(**options: object) -> tuple[Pair, Paused]:
+def changing(**options: Any) -> tuple[Pair, Paused]:
     """A job that waits for its second pen."""
     pair = Pair(plotter(), **options).ready()
     pair.session.start(in_two_pens(), pair.now)
@@ -28,7 +30,7 @@ def changing(**options: object) -> tuple[Pair, Paused]:
 
 
 @pytest.mark.parametrize("options", [{}, {"flow": "line"}, {"dry_run": True}])
-def test_it_waits_parked_with_the_first_pen_drawn_and_nothing_of_the_next_one_sent(options: dict[str, object]) -> None:
+def test_it_waits_parked_with_the_first_pen_drawn_and_nothing_of_the_next_one_sent(options: dict[str, Any]) -> None:
     pair, paused = changing(**options)
     assert paused == Paused(2, None, change=True)
     assert pair.pen_up
