@@ -75,3 +75,20 @@ def test_a_page_that_is_black_or_white_all_over_fails_with_a_sentence_and_leaves
     with pytest.raises(NothingToDraw, match="300 x 400 px holds no line to draw: give a drawing"):
         plan_picture(tmp_path / "source.png", tmp_path, settings, "plotter")
     assert [path.name for path in tmp_path.iterdir()] == ["source.png"]
+
+
+def test_a_hatch_is_as_fine_on_paper_as_the_settings_say(settings: Settings, tmp_path: Path) -> None:
+    """A filled disc in a frame, 600 px on 60 mm."""
+    grey = np.full((600, 600), 255, np.uint8)
+    cv2.rectangle(grey, (10, 10), (590, 590), 0, 7)
+    cv2.circle(grey, (300, 300), 180, 0, -1)
+    cv2.imwrite(str(tmp_path / "source.png"), grey)
+    hatch = {"fill": "hatch", "hatch_spacing_mm": 2.0, "hatch_angle_deg": 0.0}
+    sheet = {"box_mm": (60.0, 60.0)}
+    asked = {"planning": settings.planning.model_copy(update=hatch), "sheet": settings.sheet.model_copy(update=sheet)}
+    plan_picture(tmp_path / "source.png", tmp_path, settings.model_copy(update=asked), "plotter")
+    assert "1 filled area is hatched" in read(tmp_path / "report.json")["page_steps"]
+    lines = [np.array(stroke) for stroke in read(tmp_path / "strokes.json")["strokes"]]
+    (hatched,) = [line for line in lines if 10 < len(line) < 100 and np.abs(line - 300).max() < 180]
+    rows = np.unique(hatched[:, 1].round(1))
+    assert np.diff(rows) / 10 == pytest.approx(2.0, abs=0.05)
