@@ -210,3 +210,23 @@ def test_the_settings_that_the_inbox_page_shows_are_settings(tmp_path: Path) -> 
     assert settings.keep.free_mb == 200
     assert settings.intake == Intake()
     assert parse(side.removeprefix("toml").encode(), "house.toml").copies == 3
+
+
+def test_pens_keep_their_order_and_colours_are_said_by_name_or_number(tmp_path: Path) -> None:
+    said = settings('[pens]\ncolours = { red = "tomato", black = "#1A1A1A" }\nskip = ["black"]\n', tmp_path)
+    assert list(said.pens.colours.items()) == [("red", "#ff6347"), ("black", "#1a1a1a")]
+    assert said.pens.skip == ("black",)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('colours = { red = "rde" }', "'rde' is no colour: write it as"),
+        ('colours = { "red pen" = "red" }', "should match pattern"),
+        ('colours = { red = "red" }\nskip = ["rad"]', "'rad' is none of the colours"),
+        ('color = { red = "red" }', "did you mean colours"),
+    ],
+)
+def test_pens_that_are_none_are_refused(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=words):
+        settings(f"[pens]\n{text}\n", tmp_path)

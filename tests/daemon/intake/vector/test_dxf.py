@@ -203,3 +203,14 @@ def test_without_the_library_the_command_that_installs_it_is_said(
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     with pytest.raises(BadPicture, match=r"ezdxf is not installed: pip install 'linedrawd\[documents\]'"):
         open_picture(tmp_path / "a.dxf")
+
+
+def test_a_line_has_its_own_colour_or_that_of_its_layer() -> None:
+    doc = document()
+    doc.layers.add("walls", color=5)
+    space = doc.modelspace()
+    space.add_line((0, 0), (9, 0), dxfattribs={"color": 1})
+    space.add_line((0, 1), (9, 1), dxfattribs={"layer": "walls"})
+    space.add_line((0, 2), (9, 2), dxfattribs={"true_color": 0x20A040})
+    space.add_line((0, 3), (9, 3))
+    assert read(doc).colours == ((255, 0, 0), (0, 0, 255), (0x20, 0xA0, 0x40), (0, 0, 0))

@@ -235,3 +235,15 @@ def test_an_empty_svg_is_an_empty_page(tmp_path: Path) -> None:
     assert isinstance(found, VectorPage)
     assert found.drawing.strokes == ()
     assert found.page.grey.min() == 255
+
+
+def test_a_line_has_its_colour_from_wherever_it_comes() -> None:
+    said = (
+        'stroke="#d03030"',
+        'style="stroke:navy"',
+        'stroke="currentColor" color="teal"',
+        "",
+        'stroke="none" fill="red"',
+    )
+    found = read("".join(f'<path {how} d="M0 {y}h9v1"/>' for y, how in enumerate(said)))
+    assert found.colours == ((208, 48, 48), (0, 0, 128), (0, 128, 128), (0, 0, 0), (255, 0, 0))
