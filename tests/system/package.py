@@ -56,6 +56,7 @@ def whole_life(deb: Path, suite: str, folder: Path, say: Say, *, boot: bool = Tr
         life.draw_another()
         life.read_the_log()
         if debian.boots:
+            life.draw_on_a_read_only_root()
             life.upgrade_between_drawings()
             life.upgrade_while_it_draws()
         life.stop()
@@ -126,6 +127,24 @@ class Life:
         assert log.count("state=done") == 2
         assert "Traceback" not in log
         self._say("the log says:\n" + "".join(f"    {line}\n" for line in log.splitlines()[-4:]).rstrip())
+
+    def draw_on_a_read_only_root(self) -> None:
+        """As docs/install.md says it: state and log alone can be written, /var/tmp lies in memory."""
+        self._debian.stop()
+        places = (f"/{_STATE}", "/var/log")
+        for place in places:
+            self._debian.run("mount", "--bind", place, place)
+        self._debian.run("mount", "-t", "tmpfs", "tmpfs", "/var/tmp")
+        self._debian.run("systemctl", "restart", "systemd-journald")
+        self._debian.run("mount", "-o", "remount,bind,ro", "/")
+        assert "Read-only" in self._debian.run("touch", "/opt/linedrawd/more", check=False)
+        self._debian.run("systemctl", "start", "linedrawd")
+        self._drop("third.png")
+        self._wait(partial(self._job_is, "third.png", "done"))
+        self._debian.run("mount", "-o", "remount,bind,rw", "/")
+        for place in ("/var/tmp", *places):
+            self._debian.run("umount", "--lazy", place)
+        self._say("with a root that is read-only it starts, and draws")
 
     def upgrade_between_drawings(self) -> None:
         before = self._debian.main_pid()

@@ -151,8 +151,9 @@ def test_only_these_files_speak_through_sockets() -> None:
     assert users_of("http", "urllib.request", "urllib3", "requests", "ftplib", "smtplib", "xmlrpc") == set()
 
 
-def test_only_the_scanner_and_the_worker_are_started() -> None:
+def test_only_the_scanner_the_worker_and_the_counter_are_started() -> None:
     assert users_of("subprocess", "multiprocessing", "pty.spawn") == {
+        "daemon/intake/pages.py",
         "daemon/intake/scanimage.py",
         "daemon/jobs/pool.py",
     }
