@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.colours import Pens, Rgb
+from daemon.colours import BLACK, Pens, Rgb
 from daemon.homography import through
 from daemon.page.back import given_px
 from daemon.shapes import Colours, Drawing, PageImage, Points, Stroke
@@ -35,14 +35,15 @@ _SNAP_WIDTHS = 2.0
 def by_pen(drawing: Drawing, page: PageImage, corners: Points, pens: Pens) -> Drawing:
     """The same lines, each with its pen, cut where the pen changes; without those of pens that are left out.
 
-    drawing: in px of the page. corners: (V, 2), where lines meet. A page without `colour` gives the drawing as it is.
+    drawing: in px of the page. corners: (V, 2), where lines meet. A page without `colour` is all black.
 
     Ink and paper mix along a straight way from the colour of the paper, the picture's own light taken off, to that of
     the pen (CIELAB): the pen to whose way a line's colour is nearest has drawn it. Along a stroke the pens are those
     that fit best altogether (Viterbi 1967), where a change costs more than a line that crosses the stroke hides of it.
     """
     if page.colour is None:
-        return drawing
+        only = pens.nearest(BLACK)
+        return replace(drawing, strokes=tuple(replace(stroke, pen=only) for stroke in drawing.strokes))
     look, meet = _Look(page, page.colour, pens.colours), {corner.tobytes() for corner in corners}
     parts = (part for stroke in drawing.strokes for part in _parts(stroke, look, meet))
     return replace(drawing, strokes=tuple(part for part in parts if part.pen not in pens.skip))

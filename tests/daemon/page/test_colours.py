@@ -127,11 +127,13 @@ def test_chalk_of_two_colours_on_a_dark_board() -> None:
     assert [stroke.pen for stroke in found.strokes] == [0, 1]
 
 
-def test_a_dot_has_a_pen_and_a_page_without_colours_leaves_everything_as_it_is() -> None:
+def test_a_dot_has_a_pen_and_a_page_without_colours_is_black() -> None:
     page = page_with(bar((PENS["blue"], (100, 100), (100, 100)), width_px=9), 9.0)
     dot = drawing(np.array([[100.0, 100.0]]))
     assert [stroke.pen for stroke in by_pen(dot, page, NOWHERE, ALL).strokes] == [2]
-    assert by_pen(dot, replace(page, colour=None), NOWHERE, ALL) is dot
+    other = Pens(ALL.names[::-1], ALL.colours[::-1])
+    assert [stroke.pen for stroke in by_pen(dot, replace(page, colour=None), NOWHERE, other).strokes] == [2]
+    assert [stroke.pen for stroke in by_pen(dot, replace(page, colour=None), NOWHERE, Pens()).strokes] == [0]
 
 
 @pytest.mark.parametrize("turn", [lambda seen: seen, lambda seen: 255 - seen], ids=["yellow on white", "on black"])
