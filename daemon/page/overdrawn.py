@@ -24,7 +24,7 @@ _PARTS, _TAPERED, _BLUNT = 5, 0.72, 0.9
 """Of so many parts of its length the outer two are as narrow beside the widest: on the mean; each of them."""
 _FEWEST = 3
 """A hand that draws over its lines leaves some; one or two are lines that have come close by chance."""
-_AROUND_WIDTHS, _SEEN_WIDTHS = 4.0, 40.0
+_AROUND_WIDTHS, _SEEN_WIDTHS = 4.0, 16.0
 _SPUR_WIDTHS = 1.5
 
 
