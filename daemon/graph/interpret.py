@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.components import components
 from daemon.graph.anchors import anchored
 from daemon.graph.bends import sharpened
 from daemon.graph.crossings import Lines, unmelted
@@ -108,7 +109,8 @@ def _check(page: PageImage, segmentation: Segmentation) -> None:
 def _ink_of(page: PageImage) -> _Ink:
     """Ink without specks, dots taken out of it."""
     mask = ink_mask(page.grey)
-    _, labels, stats, centres = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)
+    pieces = components(mask)
+    stats, centres = pieces.stats, pieces.centres
     areas = stats[:, cv2.CC_STAT_AREA]
     width_px = page.line_width_px or _USUAL_PX
     dirt = areas < _LEAST_SPECK_PX
@@ -116,8 +118,9 @@ def _ink_of(page: PageImage) -> _Ink:
     dots = ~dirt & (sides <= 1.5 * width_px + 1.0)
     blots = ~dirt & ~dots & (sides <= _BLOT_WIDTHS * width_px)
     dots[0] = dirt[0] = blots[0] = False
-    lines = mask & ~(dots | dirt)[labels]
-    middles = np.asarray(centres[dots], np.float64).reshape(-1, 2)
+    lines = pieces.mapped(~(dots | dirt))
+    lines &= mask
+    middles = centres[dots]
     about = np.concatenate([centres[blots], stats[blots, :4]], axis=1)
     return _Ink(lines, middles, about, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask))
 
