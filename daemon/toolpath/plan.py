@@ -53,8 +53,8 @@ def plan_toolpath(
     drawn from its other end, a closed one from another point, and strokes that share points may be joined otherwise
     there (see `rejoined`) unless rejoin is False; ends lie exactly where they were, and so do the crossings of
     polylines. Curves are fitted last, to the lines as they were traced and in mm of the machine, for only there arcs
-    are arcs. All strokes of one pen are drawn before those of the next. Raises NothingToDraw without strokes, OutOfReach
-    before anything moves.
+    are arcs. All strokes of one pen are drawn before those of the next. Raises NothingToDraw without strokes,
+    OutOfReach before anything moves.
     """
     if not drawing.strokes:
         raise NothingToDraw(

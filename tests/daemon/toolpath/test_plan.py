@@ -155,3 +155,10 @@ def test_a_crossing_stays_exactly_on_both_strokes() -> None:
 def test_start_and_park_position_are_told_on() -> None:
     toolpath = plan_toolpath(drawing([(0, 0), (50, 0)]), start_mm=(1, 2), park_mm=(3, 4))
     assert (toolpath.start_mm, toolpath.park_mm) == ((1, 2), (3, 4))
+
+
+def test_one_pen_is_done_before_the_next_begins_and_each_by_a_short_way() -> None:
+    across = [Stroke(np.array([[10.0 * x, 10.0], [10.0 * x, 20.0]]), pen=x % 2) for x in (3, 0, 5, 2, 1, 4)]
+    tour = plan_toolpath(Drawing(tuple(across), 60, 60)).strokes
+    assert [stroke.pen for stroke in tour] == [0, 0, 0, 1, 1, 1]
+    assert sorted({stroke.points[0][0] for stroke in tour[:3]}) == [stroke.points[0][0] for stroke in tour[:3]]
