@@ -112,6 +112,8 @@ def plan_picture(
         pages = given.page if isinstance(given, VectorPage) else given, readable
         understood = page, seen.segmentation, seen.graph, seen.on_page
         write_pictures(folder, settings, toolpath, about, pages=pages, understood=understood)
+        # What was understood is large and not asked for again, and the measure needs its room.
+        del given, seen, page, pages, understood
         found = _fidelity_mm(readable, [s.points for s in toolpath.strokes], toolpath.from_px, width_px)
     report = replace(report, fidelity=found, stage_s=stages.seconds, peak_memory_mb=_peak_memory_mb())
     write_durably(folder / "report.json", to_json(report).encode())
