@@ -111,11 +111,13 @@ def test_what_pens_that_are_left_out_have_drawn_is_not_drawn() -> None:
     assert kept.points[:, 0].min() > 96
 
 
-def test_pens_of_one_tone_are_told_apart_by_how_dark_they_are() -> None:
-    pens = Pens(("black", "pencil"), ((20, 20, 20), (150, 150, 150)))
+@pytest.mark.parametrize("black_first", [True, False])
+def test_pens_of_one_tone_are_told_apart_by_how_dark_they_are(black_first: bool) -> None:
+    shades = ((20, 20, 20), (150, 150, 150))
+    pens = Pens(("a", "b"), shades if black_first else shades[::-1])
     page = page_with(bar(("#969696", (20, 50), (180, 50)), ("#141414", (20, 100), (180, 100))), 5.0)
     found = by_pen(drawing(line((20, 50), (180, 50)), line((20, 100), (180, 100))), page, NOWHERE, pens)
-    assert [stroke.pen for stroke in found.strokes] == [1, 0]
+    assert [stroke.pen for stroke in found.strokes] == ([1, 0] if black_first else [0, 1])
 
 
 def test_chalk_of_two_colours_on_a_dark_board() -> None:
