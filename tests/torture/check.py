@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -17,6 +18,9 @@ from tests.torture.told import Told, faults_of, told
 
 PLANNERS = 2
 """So many workers die over a picture before its job fails, as it is meant to; the picture stays in its folder."""
+
+ON_ITS_WAY_S = 5.0
+"""A picture may be between the inbox and its folder for so long; what is lost or doubled stays so."""
 
 
 @dataclass(slots=True)
@@ -78,9 +82,10 @@ class Checks:
                 self.found.lost[job.id] = f"job {job.id} was cancelled by nobody: {job.words}"
 
     def _check_pictures(self, jobs: dict[str, Told]) -> None:
-        """Every dropped picture is a job or lies in the inbox, once. Looked at twice: it may just be on its way."""
-        wrong = self._wrong_pictures()
-        if wrong:
+        """Every dropped picture is a job or lies in the inbox, once. One that is on its way is looked at again."""
+        wrong, until = self._wrong_pictures(), time.monotonic() + ON_ITS_WAY_S
+        while wrong and time.monotonic() < until:
+            time.sleep(0.1)
             wrong = {key: words for key, words in self._wrong_pictures().items() if key in wrong}
         for (kind, name), words in wrong.items():
             getattr(self.found, kind)[name] = words
