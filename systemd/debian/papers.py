@@ -22,6 +22,7 @@ _SAID_OTHERWISE = {
     "onnxruntime": "MIT",
     "opencv-python-headless": "Apache-2.0",
     "protobuf": "BSD-3-Clause",
+    "pypdfium2": "(Apache-2.0 OR BSD-3-Clause) AND LicenseRef-PDFium-and-its-parts",
     "pyserial": "BSD-3-Clause",
     "pyusb": "BSD-3-Clause",
     "watchdog": "Apache-2.0",

@@ -18,7 +18,7 @@ import elf
 
 PLATFORMS = {"amd64": "x86_64", "arm64": "aarch64"}
 _MANYLINUX = ("manylinux_2_28", "manylinux_2_27", "manylinux_2_17", "manylinux2014")
-EXTRAS = ("gpio",)
+EXTRAS = ("gpio", "pdf")
 """What the package holds of the extras of linedrawd's wheel."""
 DEAD = {
     # The same library once more: the module for Python has its own copy inside.
@@ -157,8 +157,10 @@ def leaner(path: str, content: bytes) -> bytes:
 
 
 def is_licence(path: str) -> bool:
-    """A text of a licence, in the folder of the metadata or at the top of a part."""
+    """A text of a licence: in the folder of the metadata for them, beside the metadata, or at the top of a part."""
     folder, _, name = path.rpartition("/")
+    if ".dist-info/licenses/" in path:
+        return True
     in_metadata = ".dist-info" in folder and not path.endswith((".json", ".py"))
     at_top = folder != "" and "/" not in folder and path.endswith((".txt", "LICENSE"))
     return bool(name) and (in_metadata or at_top) and any(fnmatch(name.lower(), pattern) for pattern in _LICENCE)

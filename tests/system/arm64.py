@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from tests.daemon.intake.vector.pdfs import pdf
 from tests.system.debian_root import PROJECT, archive
 
 SUITE = "bookworm"
@@ -50,9 +51,12 @@ def check(deb: Path) -> None:
         step(root, "linedrawd", "plan", "/tmp/star.png", "-o", "/tmp/plans")
         emulated = (root / "tmp/plans/star/program.gcode").read_text()
         compare(native(Path(folder)), emulated)
+        (root / "tmp/page.pdf").write_bytes(pdf(["9 9 m 60 9 l 60 99 l S"]))
+        step(root, "linedrawd", "plan", "/tmp/page.pdf", "-o", "/tmp/plans")
+        assert "G1 " in (root / "tmp/plans/page/program.gcode").read_text()
         drawn = step(root, "linedrawd", "draw", "/tmp/star.png", "--device", "sim", "--state-dir", "/tmp/state", "-v")
         assert "state=done" in drawn
-    print("the arm64 package installs, plans and draws", flush=True)
+    print("the arm64 package installs, plans a picture and a PDF, and draws", flush=True)
 
 
 def native(folder: Path) -> str:

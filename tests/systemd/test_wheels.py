@@ -104,6 +104,7 @@ def test_what_is_no_library_is_refused() -> None:
     ("path", "is_one"),
     [
         ("a-1.dist-info/licenses/LICENSE", True),
+        ("a-1.dist-info/licenses/PARTS/zlib.txt", True),
         ("a-1.dist-info/COPYING", True),
         ("onnxruntime/ThirdPartyNotices.txt", True),
         ("onnxruntime/LICENSE", True),
