@@ -32,7 +32,7 @@ test: $(VENV)/test ## Every test that needs neither PyTorch nor a system package
 test-training: $(VENV)/test $(VENV)/training ## The tests that need PyTorch
 	$(BIN)/python -m pytest -m training
 
-test-system: $(VENV)/test $(VENV)/deb ## The tests that need system packages or the senders of other people
+test-system: $(VENV)/test $(VENV)/deb ## The tests that need system packages or the senders of other people; DEB=FILE
 	$(BIN)/python -m pytest -m system
 
 check: $(VENV)/test $(VENV)/check $(VENV)/deb ## Form, lint, types, import contracts and unit tests: the fast ones, while coding

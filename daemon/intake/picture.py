@@ -18,7 +18,12 @@ from daemon.intake.vector.common import Rendered, Vectors
 from daemon.intake.vector.sheet import VectorPage, as_page
 from daemon.shapes import PageImage
 
-INSTALL = "pip install 'linedrawd[documents]'"
+WITHOUT = {
+    "a PDF": "save it as SVG or PNG; where linedrawd came by pip: pip install 'linedrawd[pdf]'",
+    "a DXF": "save it as SVG or PDF; where linedrawd came by pip: pip install 'linedrawd[documents]'",
+    "a HEIC": "save it as JPEG; where linedrawd came by pip: pip install 'linedrawd[documents]'",
+}
+"""What helps where the library for a kind of file is missing; Debian's package cannot be added to."""
 MOST_HEIC_BYTES = 100_000_000
 _HEAD_BYTES = 4096
 _SVG = re.compile(rb"(?:\xef\xbb\xbf)?\s*<(?:\?xml|!--|!DOCTYPE\s+svg|svg)", re.IGNORECASE)
@@ -62,7 +67,7 @@ def _read(
     except ValueError as error:
         raise BadPicture(f"{name} is {kind} that {error}") from error
     except ModuleNotFoundError as error:
-        raise BadPicture(f"{name} is {kind}, and {error.name} is not installed: {INSTALL}") from error
+        raise BadPicture(f"{name} is {kind}, and {error.name} is not installed: {WITHOUT[kind]}") from error
 
 
 def _head(path: Path) -> bytes:

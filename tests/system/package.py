@@ -18,6 +18,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from tests.daemon.intake.vector.pdfs import pdf
 from tests.system.debian_root import PROJECT, PYTHONS, Machine, archive, host_suite, machine
 
 READY_WITHIN_S, FIRST_LINE_WITHIN_S, EXPOSURE = 2.0, 6.0, 1.5
@@ -54,6 +55,7 @@ def whole_life(deb: Path, suite: str, folder: Path, say: Say, *, boot: bool = Tr
         life.look_at_the_unit()
         life.start_with_a_waiting_picture()
         life.draw_another()
+        life.draw_a_pdf()
         life.read_the_log()
         if debian.boots:
             life.draw_on_a_read_only_root()
@@ -122,9 +124,17 @@ class Life:
         assert report["fidelity"]["f1"] > 0.98
         self._say(f"alice's next picture is drawn: {report['strokes']} strokes, f1 {report['fidelity']['f1']:.3f}")
 
+    def draw_a_pdf(self) -> None:
+        """Of two pages, by PDFium inside the unit's sandbox."""
+        (self._root / "usr/share/paths.pdf").write_bytes(pdf(["9 9 m 60 9 l 60 99 l S", "9 9 m 60 99 l S"]))
+        self._drop("paths.pdf", "/usr/share/paths.pdf")
+        for page in ('"paths.pdf page 1"', '"paths.pdf page 2"'):
+            self._wait(partial(self._job_is, page, "done"))
+        self._say("a PDF of two pages is drawn, each of them a job")
+
     def read_the_log(self) -> None:
         log = (self._root / _LOG).read_text()
-        assert log.count("state=done") == 2
+        assert log.count("state=done") == 4
         assert "Traceback" not in log
         self._say("the log says:\n" + "".join(f"    {line}\n" for line in log.splitlines()[-4:]).rstrip())
 
@@ -221,8 +231,8 @@ class Life:
         assert f"\n{key} = {new}\n" in text
         file.write_text(text)
 
-    def _drop(self, name: str) -> None:
-        picture, inbox = "/usr/share/picture.png", f"/{_STATE}/inbox"
+    def _drop(self, name: str, picture: str = "/usr/share/picture.png") -> None:
+        inbox = f"/{_STATE}/inbox"
         self._debian.run("setpriv", "--reuid=alice", "--regid=alice", "--init-groups", "cp", picture, f"{inbox}/{name}")
 
     def _job_is(self, picture: str, state: str) -> bool:

@@ -55,4 +55,4 @@ def test_without_the_library_the_command_that_installs_it_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pi_heif", None)
-    assert "pi_heif is not installed: pip install 'linedrawd[documents]'" in refusal(tmp_path, INK_TOP_LEFT)
+    assert "pi_heif is not installed: save it as JPEG; where" in refusal(tmp_path, INK_TOP_LEFT)

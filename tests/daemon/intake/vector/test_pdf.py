@@ -255,5 +255,5 @@ def test_without_the_library_the_command_that_installs_it_is_said(
 ) -> None:
     (tmp_path / "a.pdf").write_bytes(pdf([""]))
     monkeypatch.setitem(sys.modules, "pypdfium2", None)
-    with pytest.raises(BadPicture, match=r"pypdfium2 is not installed: pip install 'linedrawd\[documents\]'"):
+    with pytest.raises(BadPicture, match=r"pypdfium2 is not installed: save it as SVG or PNG; .*pip install 'linedrawd\[pdf\]'"):
         open_picture(tmp_path / "a.pdf")
