@@ -62,9 +62,12 @@ class Checks:
     def all(self) -> None:
         """Look at everything. The daemon may be at work meanwhile: only what is over is judged."""
         jobs = told(self._daemon.journal)
-        # What is certain is on the sheet later; what is there is promised later still.
-        self._check_ink(jobs, {machine.name: machine.sheet() for machine in self._machines})
-        self._check_promises(told(self._daemon.journal))
+        # What is certain is on the sheet later; what is there is of a job, and promised, later still.
+        sheets = {machine.name: machine.sheet() for machine in self._machines}
+        later = told(self._daemon.journal)
+        self._know_ink(later, sheets)
+        self._check_ink(jobs)
+        self._check_promises(later)
         self._check_pictures(jobs)
         for wrong in faults_of(self._daemon.journal):
             self.found.other[wrong] = wrong
@@ -105,11 +108,13 @@ class Checks:
                 wrong["doubled", name] = f"the picture {name} is there {copies[key]} times"
         return wrong
 
-    def _check_ink(self, jobs: dict[str, Told], sheets: dict[str, Sheet]) -> None:
+    def _know_ink(self, jobs: dict[str, Told], sheets: dict[str, Sheet]) -> None:
         programs = {job.id: self._program(job.id) for job in jobs.values() if State.DRAWING in job.states}
         for machine, sheet in sheets.items():
             self._identify(self.known[machine], sheet.lines, programs)
         self.check_times()
+
+    def _check_ink(self, jobs: dict[str, Told]) -> None:
         for job in jobs.values():
             if job.over:
                 self._check_words(job)
