@@ -89,6 +89,7 @@ def parts_of(
         runner = Runner(desk, pool, planning, drawings, pulse)
         parts = Parts(desk, pool, planning, runner, board, diary, pulse, drawings=drawings)
         recorder = at_end.enter_context(closing(Recorder(record))) if record else None
+        board.change(recording=str(record.absolute()) if record else "")
         for name in settings.machines:
             _add_machine(parts, settings, name, recorder)
             at_end.callback(drawings[name].close)

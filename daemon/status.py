@@ -54,7 +54,7 @@ class Status(MachineStatus):
     """What status.json holds.
 
     machines: each machine, by name. With one machine the fields beside it tell the same of that one; with several
-    only `state`, that of the busiest, and `words`, a few of each.
+    only `state`, that of the busiest, and `words`, a few of each. recording: the file of --record.
     """
 
     pid: int = 0
@@ -65,6 +65,7 @@ class Status(MachineStatus):
     jobs_waiting: int = 0
     jobs_to_approve: int = 0
     last_error: str = ""
+    recording: str = ""
     changed: str = ""
     machines: Mapping[str, MachineStatus] = field(default_factory=dict)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import json
 import platform
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -20,7 +22,7 @@ from daemon.status import JOB_LOG_NAME, LOG_NAME
 
 EXAMPLES = """examples:
   linedrawd report 12                             # linedrawd-report-000012-house.zip, here
-  linedrawd report 12 --recording plotter.txt     # with what was said to the machine, as --record wrote it
+  linedrawd report 12 --recording plotter.txt     # with a recording that is not of the last daemon
   linedrawd report 12 --without-picture           # neither the given picture nor what was made of it
 Look into it before you send it: the picture and the names of your files are in it. Nothing is sent by this command.
 """
@@ -33,14 +35,14 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "report",
         help=words,
-        description="Write a zip with the job's folder, its log, the settings without secrets, versions, and what "
-        "`linedrawd doctor` finds.",
+        description="Write a zip with the job's folder, its log, the settings without secrets, versions, what "
+        "`linedrawd doctor` finds, and what was said to the machine where --record writes it down.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("job", metavar="JOB", help="its id, or the number at its beginning")
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="the zip; here, named after the job, if not")
-    parser.add_argument("--recording", metavar="FILE", type=Path, help="written by --record")
+    parser.add_argument("--recording", metavar="FILE", type=Path, help="by --record; the daemon's, if not")
     parser.add_argument("--without-picture", action="store_true", help="nothing that shows what was drawn")
     add_places(parser)
     parser.set_defaults(run=run)
@@ -61,8 +63,8 @@ def run(args: argparse.Namespace) -> int:
     }
     if f"{folder.name}/{JOB_LOG_NAME}" in parts:
         parts[f"{folder.name}/{JOB_LOG_NAME}"] = _plain(folder / JOB_LOG_NAME)
-    if args.recording:
-        parts["recording.txt"] = _recording(args.recording)
+    if recording := args.recording or (None if args.without_picture else _of_the_daemon(settings.paths.status)):
+        parts["recording.txt"] = _recording(recording)
     told = write_bundle(bundle, {name: part for name, part in parts.items() if part not in (b"", "")})
     for name, size in told:
         print(f"{_size(size):>9}  {name}")
@@ -90,6 +92,14 @@ def _settings(args: argparse.Namespace) -> str:
 
 def _plain(file: Path) -> str:
     return without_secrets(tail(file).decode(errors="replace"))
+
+
+def _of_the_daemon(status: Path) -> Path | None:
+    """The recording that its status names, where it is still there."""
+    with suppress(OSError, ValueError, KeyError):
+        said = Path(json.loads(status.read_text(encoding="utf-8"))["recording"])
+        return said if said.is_file() else None
+    return None
 
 
 def _recording(file: Path) -> bytes:

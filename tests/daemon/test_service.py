@@ -205,6 +205,12 @@ def test_the_status_is_there_before_anything_happens(tmp_path: Path) -> None:
     assert '"state": "idle"' in found[0]
 
 
+def test_the_status_names_the_recording(tmp_path: Path) -> None:
+    for record in (tmp_path / "said.txt", None):
+        with parts_of(settings_of(tmp_path), planner=PLANNER, record=record) as parts:
+            assert parts.board.now.recording == (str(record) if record else "")
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_thread_that_dies_ends_the_daemon_in_order(tmp_path: Path) -> None:
     settings = settings_of(tmp_path)

@@ -222,5 +222,5 @@ def test_with_one_machine_the_status_has_the_fields_it_always_had(tmp_path: Path
     assert set(said) >= {
         "state", "words", "pid", "machine", "firmware", "port", "job", "picture", "stage", "strokes_done",
         "strokes_total", "percent", "seconds_left", "planning", "jobs_queued", "jobs_waiting", "held", "ink_m", "pen",
-        "last_error", "changed",
+        "last_error", "recording", "changed",
     }  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import zipfile
 from pathlib import Path
 
@@ -50,6 +51,16 @@ def test_everything_about_the_job_is_in_it_and_told(state: Path, capsys: pytest.
     assert "Look into it before you send it" in said
     assert b"onnxruntime 1" in parts["about.txt"]
     assert b"ok     memory" in parts["doctor.txt"]
+
+
+@pytest.mark.parametrize(("name", "there"), [("plotter.txt", True), ("gone.txt", False), ("", False)])
+def test_the_recording_that_the_daemon_writes_is_in_it(state: Path, name: str, there: bool) -> None:
+    (state / "state" / "run").mkdir()
+    recording = str(state / name) if name else ""
+    (state / "state" / "run" / "status.json").write_text(json.dumps({"recording": recording}))
+    assert ("recording.txt" in bundle_of(state)) is there
+    (state / "linedrawd-report-000012-house.zip").unlink()
+    assert "recording.txt" not in bundle_of(state, "--without-picture")
 
 
 def test_no_secret_is_in_it(state: Path) -> None:
