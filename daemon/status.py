@@ -19,6 +19,7 @@ from daemon.errors import DiskTrouble
 LOG_NAME = "linedrawd.log"
 JOB_LOG_NAME = "job.log"
 AT_MOST_EVERY_S = 1.0
+_SYSLOG = {logging.ERROR: 3, logging.WARNING: 4}
 _BUSY = ("drawing", "paused", "waiting", "held", "idle", "starting")
 """States of machines; the first one there is is told of all of them together."""
 
@@ -177,10 +178,11 @@ class Diary:
         self._log.setLevel(logging.INFO)
         self._log.propagate = False
         self._handlers: list[logging.Handler] = [_file_handler(log_dir, self._limit_bytes, log_files)]
+        self._handlers[0].setFormatter(_Line())
         if to_stderr:
             self._handlers.append(logging.StreamHandler())
+            self._handlers[1].setFormatter(_JournalLine() if _stderr_is_the_journal() else _Line())
         for handler in self._handlers:
-            handler.setFormatter(_Line())
             self._log.addHandler(handler)
 
     def say(self, words: str, *, job: str = "", level: int = logging.INFO, **values: Any) -> None:
@@ -243,6 +245,21 @@ class _Line(logging.Formatter):
             text += " " + self.formatException(record.exc_info)
         words = " ".join(text.split())
         return f"{clock(record.created)} {record.levelname} {getattr(record, 'job', '') or '-'} {words}"
+
+
+class _JournalLine(_Line):
+    """The same line, behind its level in syslog's numbers, which systemd takes off again (man sd-daemon)."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        return f"<{_SYSLOG.get(record.levelno, 6)}>{super().format(record)}"
+
+
+def _stderr_is_the_journal() -> bool:
+    """As JOURNAL_STREAM says, which also the children of a service inherit whose stderr leads elsewhere."""
+    with contextlib.suppress(OSError):
+        stderr = os.fstat(2)
+        return os.environ.get("JOURNAL_STREAM") == f"{stderr.st_dev}:{stderr.st_ino}"
+    return False
 
 
 def clock(at_s: float) -> str:

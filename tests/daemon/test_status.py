@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,6 +29,18 @@ def test_an_event_is_one_line_of_time_level_job_words_and_values(diary: Diary, t
     stamp = r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ"
     assert re.fullmatch(rf'{stamp} WARNING 000001-a 50 % drawn of it name="a b\.png" seconds=1\.25 empty=""\n', line)
     assert (tmp_path / "jobs" / "000001-a" / "job.log").read_text() == line
+
+
+@pytest.mark.parametrize(("shift", "level"), [(0, "<3>"), (1, "")])
+def test_the_journal_is_told_the_same_line_and_its_level(
+    shift: int, level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    stderr = os.fstat(2)
+    monkeypatch.setenv("JOURNAL_STREAM", f"{stderr.st_dev}:{stderr.st_ino + shift}")
+    diary = Diary(tmp_path / "log", tmp_path / "jobs", to_stderr=True)
+    diary.say("no ink", level=logging.ERROR)
+    diary.close()
+    assert capfd.readouterr().err == level + (tmp_path / "log" / "linedrawd.log").read_text()
 
 
 def test_the_log_goes_on_in_a_new_file_when_the_old_one_was_moved_away(diary: Diary, tmp_path: Path) -> None:

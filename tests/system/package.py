@@ -136,6 +136,9 @@ class Life:
         log = (self._root / _LOG).read_text()
         assert log.count("state=done") == 4
         assert "Traceback" not in log
+        if self._debian.boots:
+            self._wait(lambda: set(log.splitlines()) <= set(self._journal()))
+            self._say("systemd's journal says the same, line by line")
         self._say("the log says:\n" + "".join(f"    {line}\n" for line in log.splitlines()[-4:]).rstrip())
 
     def draw_on_a_read_only_root(self) -> None:
@@ -243,6 +246,9 @@ class Life:
     def _none_is_held(self) -> bool:
         """As the status says, which is written at most once a second."""
         return "held" not in self._debian.run("linedrawd", "status")
+
+    def _journal(self) -> list[str]:
+        return self._debian.run("journalctl", "--unit=linedrawd", "--output=cat", "--no-pager").splitlines()
 
     def _is_there(self, path: str) -> bool:
         return bool(self._debian.run("sh", "-c", f"test -e {path} && echo yes", check=False))

@@ -38,10 +38,11 @@ def run(*command: str | Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_unit_waits_for_ready_and_starts_again_what_can_get_better() -> None:
-    keys = ("Type", "NotifyAccess", "ExecReload", "Restart", "RestartPreventExitStatus", "OOMPolicy")
+    keys = ("Type", "NotifyAccess", "ExecStart", "ExecReload", "Restart", "RestartPreventExitStatus", "OOMPolicy")
     assert {key: value(key) for key in keys} == {
         "Type": "notify",
         "NotifyAccess": "main",
+        "ExecStart": "/opt/linedrawd/bin/linedrawd -v",
         "ExecReload": '/bin/sh -c "kill -HUP ${MAINPID}"',
         "Restart": "on-failure",
         "RestartPreventExitStatus": "2",
