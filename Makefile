@@ -47,7 +47,7 @@ format: $(VENV)/check ## Bring the code into form
 	$(BIN)/ruff format $(CODE)
 	$(BIN)/ruff check --fix $(CODE)
 
-bench: $(VENV)/runtime ## The figures: seconds of each stage, lines a second, memory
+bench: $(VENV)/test ## The figures: seconds of each stage, lines a second, memory
 	@$(BIN)/python -m tests.benchmarks
 
 bench-fidelity: $(VENV)/runtime ## How close the strokes come, against the bars; QUICKDRAW=FILE adds real sketches
