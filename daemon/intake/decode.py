@@ -39,7 +39,7 @@ def decode(
     lies over white, every depth becomes 8 bits. name: what people call the file, if not by its path. in_colour: the
     page keeps its colours, and what is coloured counts as ink however light it is. Raises BadPicture
     when the file cannot be opened (links and what is no regular file are not), is none of these, is greater than
-    max_megapixels, damaged or cut short.
+    max_megapixels, damaged or cut short, MemoryError where there is too little memory for its pixels.
     """
     name = name or str(path)
     data = read_file(path, name, most_bytes=int(max_megapixels * 1e6) * _MOST_BYTES_PER_PX + _MOST_OVERHEAD_BYTES)
@@ -132,6 +132,8 @@ def _pixels(name: str, data: bytes, header: Header, *, in_colour: bool) -> NDArr
     try:
         pixels = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
     except cv2.error as error:
+        if error.code == cv2.Error.StsNoMem:
+            raise MemoryError from error
         raise BadPicture(_damaged(name, header)) from error
     if pixels is None:
         raise BadPicture(_damaged(name, header))

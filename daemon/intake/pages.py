@@ -15,7 +15,9 @@ import daemon
 MOST_PAGES = 100
 UNCOUNTED = 0
 """The page of a document of which nobody knows how many pages it has."""
-_HEAD = re.compile(rb"II\*\0|MM\0\*|.{0,1019}%PDF-", re.DOTALL)
+PDF_HEAD = re.compile(rb"(?!\x89PNG|\xff\xd8|II\*\0|MM\0\*).{0,1019}%PDF-", re.DOTALL)
+"""Other bytes may lie before it, but none of a picture in which somebody has only noted where it came from."""
+_TIFF_HEAD = re.compile(rb"II\*\0|MM\0\*")
 _HEAD_BYTES = 1024
 _ROOT = Path(daemon.__file__).parent.parent
 _WITHIN_S = 20
@@ -27,12 +29,15 @@ def count_pages(path: Path) -> int:
 
     A document that is damaged, encrypted or has more than MOST_PAGES is one job, which fails and says why.
     """
-    if not _HEAD.match(_head(path)):
+    head = _head(path)
+    if not (_TIFF_HEAD.match(head) or PDF_HEAD.match(head)):
         return 1
     try:
         counted = subprocess.run(
             [sys.executable, "-m", "daemon.intake.pages", str(path.absolute())],
             cwd=_ROOT, stdin=subprocess.DEVNULL, capture_output=True, timeout=_WITHIN_S, check=False,
+            # Ctrl-C ends the daemon, not a count that would then be taken for one that went wrong.
+            start_new_session=True,
         )  # fmt: skip
     except (OSError, subprocess.TimeoutExpired):
         return UNCOUNTED
@@ -46,7 +51,7 @@ def checked_page(page: int, pages: int) -> int:
     if pages > MOST_PAGES:
         raise ValueError(f"has {pages} pages, at most {MOST_PAGES} are drawn: split it")
     if page == UNCOUNTED and pages > 1:
-        raise ValueError(f"has {pages} pages, which took too long to be counted: drop it again")
+        raise ValueError(f"has {pages} pages, which could not be counted when it came: drop it again")
     if page > pages:
         raise ValueError(f"has {'1 page' if pages == 1 else f'{pages} pages'}, there is no page {page}")
     return max(page, 1)
@@ -62,14 +67,17 @@ def _head(path: Path) -> bytes:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print how many pages are drawn; anything else ends with a traceback."""
+    """Print how many pages are drawn, UNCOUNTED where memory is short; anything else ends with a traceback."""
     parser = argparse.ArgumentParser(prog="python -m daemon.intake.pages", description="Counts the pages of a file.")
     parser.add_argument("file", type=Path)
     path = parser.parse_args(arguments).file
     resource.setrlimit(resource.RLIMIT_DATA, (_MEMORY_MB << 20,) * 2)
     resource.setrlimit(resource.RLIMIT_CPU, (_WITHIN_S, _WITHIN_S))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    pages = _pages_in(path.read_bytes())
+    try:
+        pages = _pages_in(path.read_bytes())
+    except MemoryError:
+        pages = UNCOUNTED
     print(pages if pages <= MOST_PAGES else 1)
     return 0
 

@@ -78,6 +78,11 @@ class Collected:
             raise ValueError(f"holds more than {MOST_POINTS} points of lines: simplify it")
 
 
+def left_out(count: int, one: str, several: str) -> list[str]:
+    """What is warned of so many things that are not drawn; nothing where there are none."""
+    return [f"1 {one} is left out" if count == 1 else f"{count} {several} are left out"] if count else []
+
+
 def checked_size(width_mm: float, height_mm: float) -> tuple[float, float]:
     """The size of a page, once it is one. Raises ValueError."""
     if not (0 < width_mm <= MOST_MM and 0 < height_mm <= MOST_MM):

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from daemon.colours import BLACK, Rgb
-from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size
+from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size, left_out
 from daemon.shapes import Points
 
 MOST_BYTES = 32_000_000
@@ -66,14 +66,15 @@ def _document(data: bytes) -> Any:
 
 def _page_of(document: Any) -> Vectors:
     mm, warnings = _unit_mm(document)
-    left_out: Counter[str] = Counter()
+    missing: Counter[str] = Counter()
     collected = Collected()
-    for entity in _Shown(document, left_out).of(document.modelspace()):
-        for points in _lines(entity, FLAT_MM / mm, left_out):
+    for entity in _Shown(document, missing).of(document.modelspace()):
+        for points in _lines(entity, FLAT_MM / mm, missing):
             collected.add(points[:, :2] * mm, _colour(entity, document))
-    texts = sum(left_out.pop(kind, 0) for kind in _TEXTS)
-    warnings += [f"{texts} texts are left out: turn them into lines where they shall be drawn"] if texts else []
-    warnings += [f"{count} of the kind {kind} are left out" for kind, count in sorted(left_out.items())]
+    texts = left_out(sum(missing.pop(kind, 0) for kind in _TEXTS), "text", "texts")
+    warnings += [f"{words}: turn what shall be drawn into lines" for words in texts]
+    for kind, count in sorted(missing.items()):
+        warnings += left_out(count, *[f"of the kind {kind}"] * 2)
     return _laid_out(collected.lines, collected.colours, warnings)
 
 
@@ -112,8 +113,8 @@ def _unit_mm(document: Any) -> tuple[float, list[str]]:
 class _Shown:
     """What is shown of a document, blocks taken apart; at most MOST_ENTITIES, blocks counted."""
 
-    def __init__(self, document: Any, left_out: Counter[str]) -> None:
-        self._left_out, self._count = left_out, 0
+    def __init__(self, document: Any, missing: Counter[str]) -> None:
+        self._missing, self._count = missing, 0
         self._hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}
         self._hidden |= {"defpoints"}
 
@@ -136,7 +137,7 @@ class _Shown:
     def _inserted(self, insert: Any) -> Iterator[Any]:
         block = insert.block()
         if block is None or block.block.is_xref or block.block.is_xref_overlay:
-            self._left_out["reference to another file"] += 1
+            self._missing["reference to another file"] += 1
         elif insert.mcount > 1:
             yield from self.of(insert.multi_insert())
         else:
@@ -144,7 +145,7 @@ class _Shown:
             yield from self.of(insert.virtual_entities())
 
 
-def _lines(entity: Any, within: float, left_out: Counter[str]) -> list[Points]:
+def _lines(entity: Any, within: float, missing: Counter[str]) -> list[Points]:
     """Each (N, 3) in the file's units."""
     from ezdxf.path import make_path  # noqa: PLC0415 - an extra
 
@@ -155,7 +156,7 @@ def _lines(entity: Any, within: float, left_out: Counter[str]) -> list[Points]:
     except (TypeError, ValueError):
         path = None
     if path is None:
-        left_out[entity.dxftype()] += 1
+        missing[entity.dxftype()] += 1
         return []
     parts = path.sub_paths() if path.has_sub_paths else [path]
     found = [np.array([tuple(point) for point in part.flattening(within)], float) for part in parts]

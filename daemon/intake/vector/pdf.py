@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.intake.pages import checked_page
+from daemon.intake.pages import PDF_HEAD, checked_page
 from daemon.intake.vector.common import Rendered, Vectors, checked_size
 from daemon.intake.vector.pdf_paths import Reading
 from daemon.intake.vector.seen import share_seen
 from daemon.intake.vector.svg_units import Matrix
 
 MOST_BYTES = 200_000_000
-HEAD = re.compile(rb".{0,1019}%PDF-", re.DOTALL)
+HEAD = PDF_HEAD
 _MM_PER_PT = 25.4 / 72
 _DPI = 300.0
 _MOST_MEGAPIXELS = 35.0

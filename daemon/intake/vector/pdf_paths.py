@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from daemon.colours import BLACK, Rgb
-from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, chords_of_bezier, clipped
+from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, chords_of_bezier, clipped, left_out
 from daemon.intake.vector.dashes import dashed
 from daemon.intake.vector.svg_units import Matrix
 from daemon.shapes import Points
@@ -54,11 +54,8 @@ class Reading:
             self._path(each)
         found = self._collected
         found.clip(size_mm)
-        return Vectors(tuple(found.lines), *size_mm, True, tuple(self._warnings()), tuple(found.colours))
-
-    def _warnings(self) -> Iterator[str]:
-        if self._white:
-            yield f"{self._white} white shapes are left out"
+        warnings = left_out(self._white, "white shape", "white shapes")
+        return Vectors(tuple(found.lines), *size_mm, True, tuple(warnings), tuple(found.colours))
 
     def _shown(self) -> Iterator[_Shown]:
         """Each object of the page but forms, which are taken apart."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size, chords_of_bezier
+from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_size, chords_of_bezier, left_out
 from daemon.intake.vector.dashes import dashed
 from daemon.intake.vector.svg_path import Run, runs_of_path, runs_of_shape
 from daemon.intake.vector.svg_style import Sheets, colour_of, filled, painted, sheets_of, shown, stroked, visible
@@ -74,7 +74,7 @@ class _Walk:
         self._ignored: set[str] = set()
 
     def warnings(self) -> list[str]:
-        found = [f"{self._white} white shapes are left out"] if self._white else []
+        found = left_out(self._white, "white shape", "white shapes")
         found += [f"{name} is not followed: what it hides or adds is not" for name in sorted(self._ignored)]
         return found + (["rules of its style sheet are not read"] if self._sheets.unread else [])
 

@@ -128,3 +128,15 @@ def test_a_file_far_too_large_is_not_even_read(tmp_path: Path) -> None:
         file.truncate(10**12)
     with pytest.raises(BadPicture, match="make it smaller"):
         decode(tmp_path / "huge.png")
+
+
+def test_a_picture_for_which_there_is_no_memory_is_not_called_damaged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        cv2.resize(np.zeros((2, 2), np.uint8), (1 << 24, 1 << 24))
+
+    (tmp_path / "a.png").write_bytes(files.encoded(".png", files.CORNER))
+    monkeypatch.setattr(cv2, "imdecode", full)
+    with pytest.raises(MemoryError):
+        decode(tmp_path / "a.png")

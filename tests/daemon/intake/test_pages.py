@@ -6,6 +6,7 @@ import os
 import signal
 import struct
 import subprocess
+import zlib
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ from daemon.errors import BadPicture
 from daemon.intake import pages
 from daemon.intake.decode import decode
 from daemon.intake.pages import MOST_PAGES, UNCOUNTED, count_pages
+from daemon.intake.picture import open_picture
+from daemon.shapes import PageImage
 from tests.daemon.intake import files
 from tests.daemon.intake.vector.pdfs import ENCRYPTED, pdf
 
@@ -128,9 +131,27 @@ def test_a_count_that_is_killed_for_its_memory_is_told_from_one(
     assert counted(tmp_path, pdf(["", ""])) == UNCOUNTED
 
 
+def test_a_file_that_the_memory_does_not_hold_is_told_from_one(tmp_path: Path) -> None:
+    with (tmp_path / "a").open("wb") as file:
+        file.write(book(0, 0))
+        file.truncate((pages._MEMORY_MB + 64) << 20)
+    assert count_pages(tmp_path / "a") == UNCOUNTED
+
+
+def test_a_picture_that_names_a_pdf_in_its_head_is_no_pdf(tmp_path: Path) -> None:
+    whole = files.encoded(".png", files.CORNER)
+    note = b"tEXtComment\0from %PDF-1.7"
+    chunk = struct.pack(">I", len(note) - 4) + note + struct.pack(">I", zlib.crc32(note))
+    (tmp_path / "a").write_bytes(whole[:33] + chunk + whole[33:])
+    assert count_pages(tmp_path / "a") == 1
+    found = open_picture(tmp_path / "a")
+    assert isinstance(found, PageImage)
+    assert found.grey.shape == files.CORNER.shape[:2]
+
+
 def test_of_an_uncounted_document_no_page_is_left_out_in_silence(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(book(0))
     assert decode(tmp_path / "a", page=UNCOUNTED).grey.shape == (1, 1)
     (tmp_path / "a").write_bytes(book(0, 0))
-    with pytest.raises(BadPicture, match="has 2 pages, which took too long to be counted: drop it again"):
+    with pytest.raises(BadPicture, match="has 2 pages, which could not be counted when it came: drop it again"):
         decode(tmp_path / "a", page=UNCOUNTED)

@@ -50,7 +50,7 @@ def test_all_lines_of_the_file_are_drawn_and_none_besides(planned: Path) -> None
     report = read(planned / "report.json")
     assert report["fidelity"]["f1"] > 0.995
     assert report["fidelity"]["iou"] > 0.9
-    assert report["warnings"] == ["1 white shapes are left out"]
+    assert report["warnings"] == ["1 white shape is left out"]
 
 
 def test_it_is_drawn_as_large_as_it_says(planned: Path) -> None:

@@ -115,8 +115,8 @@ def test_text_and_what_has_no_lines_is_told_of() -> None:
     space.add_mtext("there")
     space.add_ray((0, 0), (1, 1))
     assert read(doc).warnings == (
-        "2 texts are left out: turn them into lines where they shall be drawn",
-        "1 of the kind RAY are left out",
+        "2 texts are left out: turn what shall be drawn into lines",
+        "1 of the kind RAY is left out",
     )
 
 
@@ -125,7 +125,7 @@ def test_a_reference_to_another_file_is_left_out_and_told() -> None:
     doc.modelspace().add_line((0, 0), (1, 0))
     doc.add_xref_def("/etc/passwd", "outside")
     doc.modelspace().add_blockref("outside", (0, 0))
-    assert read(doc).warnings == ("1 of the kind reference to another file are left out",)
+    assert read(doc).warnings == ("1 of the kind reference to another file is left out",)
 
 
 def test_points_and_hatches_are_drawn() -> None:

@@ -169,7 +169,7 @@ def beside(some: NDArray[np.bool_], others: NDArray[np.bool_]) -> float:
 
 def test_what_is_white_or_only_a_clip_is_left_out() -> None:
     found = read(pdf(["1 g 0 0 72 144 re f 0 0 30 30 re W n 0 10 m 72 10 l S"]))
-    assert found.warnings == ("1 white shapes are left out",)
+    assert found.warnings == ("1 white shape is left out",)
     (line,) = found.lines
     assert line[-1, 0] / PT == pytest.approx(30, abs=0.05)
 

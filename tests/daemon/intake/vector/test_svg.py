@@ -174,7 +174,7 @@ def test_white_shapes_and_clips_are_told_of() -> None:
     found = read(
         '<rect width="100" height="80" fill="white" stroke="none"/><g clip-path="url(#a)"><path d="M1 1h1"/></g>'
     )
-    assert found.warnings == ("1 white shapes are left out", "clip-path is not followed: what it hides or adds is not")
+    assert found.warnings == ("1 white shape is left out", "clip-path is not followed: what it hides or adds is not")
 
 
 BOMB = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))
