@@ -8,11 +8,13 @@ import threading
 import time
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 from daemon import __version__
 from daemon.config import Settings
 from daemon.config.reread import reread
 from daemon.control import MACHINE_ORDERS, ControlServer, Order, give_order
+from daemon.errors import DiskTrouble
 from daemon.intake.inbox import Inbox
 from daemon.intake.watch import RESCAN_S, InboxWatch
 from daemon.jobs.arrivals import Arrivals
@@ -76,7 +78,7 @@ class Service:
         inbox = Inbox(
             folder,
             settle_s=intake.settle_s,
-            claim=partial(self._arrivals.take, inbox=machine),
+            claim=partial(self._claim, machine),
             refuse=trouble,
             signs=self._signs(machine),
             order=intake.order,
@@ -150,13 +152,25 @@ class Service:
 
     def _look_at_the_inbox(self, machine: str) -> None:
         """Called at each look: the first one comes when everything that happens from now on is heard."""
-        waits_s = max(RESCAN_S, self._settings.intake.poll_s)
-        self._parts.pulse.inbox(machine or "all").within(INBOX_WITHIN_S + waits_s)
+        self._inbox_lives(machine)
         self._unseen.discard(machine)
         if not self._unseen:
             self._supervision.watching()
         if not machine:
             self._retention.turn()
+            try:
+                self._arrivals.finish()
+            except DiskTrouble as error:
+                self._parts.desk.trouble(str(error))
+
+    def _claim(self, machine: str, picture: Path, beside: Path | None) -> None:
+        """Each in its own time: pages are counted."""
+        self._inbox_lives(machine)
+        self._arrivals.take(picture, beside, inbox=machine)
+
+    def _inbox_lives(self, machine: str) -> None:
+        waits_s = max(RESCAN_S, self._settings.intake.poll_s)
+        self._parts.pulse.inbox(machine or "all").within(INBOX_WITHIN_S + waits_s)
 
     def _reread(self) -> list[str]:
         """A sentence for each setting that has changed. Raises SettingsError."""

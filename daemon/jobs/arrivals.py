@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from daemon.intake.inbox import readable
 from daemon.intake.pages import UNCOUNTED, count_pages
 from daemon.intake.side import Wishes, parse, read_bytes
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in
-from daemon.jobs.desk import Desk
+from daemon.jobs.desk import GONE, Desk
 from daemon.jobs.folder import free_bytes, source_of
 from daemon.jobs.record import read_record
 from daemon.jobs.states import State
@@ -39,18 +40,19 @@ class Arrivals:
         self._desk, self.settings, self._free, self._pages = desk, settings, free, pages
         self._jobs_of: dict[int, list[str]] | None = None
         self._hashes: dict[str, str] = {}
+        self._unfinished: list[tuple[list[str], Arrival, Path | None]] = []
 
     def take(self, picture: Path, beside: Path | None, *, inbox: str = "") -> None:
         """Make jobs of a picture and its side file, which then lie there no longer.
 
         inbox: the machine whose inbox they lie in; "" for that of all. Raises SettingsError for a side file that is
-        wrong, DiskTrouble, or FileNotFoundError; they then still do.
+        wrong, DiskTrouble, or FileNotFoundError; they then still do, or what is still to be done is left to `finish`.
         """
         self._check_room()
         name = readable(picture.name)
         said, wishes = self._wishes(beside, inbox)
         twin = self._twin(picture, said) if self.settings.intake.duplicates == "skip" else ""
-        copies, pages = (1, 1) if twin else (wishes.copies, self._pages(picture))
+        copies, pages = (1, 1) if twin else (wishes.copies, self._counted(picture))
         side, machine = beside.name if beside else "", wishes.machine or inbox
         # The twin too, before the picture is taken: whoever finds it after a cut must not draw it again.
         arrival = Arrival(name, side, copies, inbox=inbox, machine=machine, twin=twin)
@@ -59,8 +61,22 @@ class Arrivals:
         files = {ARRIVAL_NAME: arrival.encoded()}
         if beside:
             files[SIDE_NAME] = said
-        job = self._desk.folders.take(picture, files)
-        self._add([job], arrival, beside)
+        made = [self._desk.folders.take(picture, files)]
+        try:
+            self._add(made, arrival, beside)
+        except DiskTrouble:
+            self._unfinished.append((made, arrival, beside))
+            raise
+
+    def finish(self) -> None:
+        """Make the jobs that a full disk has kept from being made of a picture that was taken. Raises DiskTrouble."""
+        while self._unfinished:
+            made, arrival, beside = self._unfinished[0]
+            try:
+                self._add(made, arrival, beside)
+            except FileNotFoundError:
+                self._desk.trouble(GONE.format(job=made[-1]))
+            del self._unfinished[0]
 
     def recover(self, inboxes: Mapping[str, Path]) -> None:
         """After a start, before the desk: make the jobs whose pictures had come in but were not recorded.
@@ -75,10 +91,9 @@ class Arrivals:
             folder = folders.path(job)
             arrival = arrival_in(folder) if read_record(folder) is None else None
             if arrival is not None and self._desk.journal.job(job) is None:
-                inbox = inboxes.get(arrival.inbox, inboxes[""])
-                made = [job, *(_copies_of(folders.root, job) if len(arrival.jobs()) > 1 else [])]
-                recorded = {each for each in made if self._desk.journal.job(each)}
-                self._add(made, arrival, inbox / arrival.side if arrival.side else None, recorded=recorded)
+                inbox, more = inboxes.get(arrival.inbox, inboxes[""]), len(arrival.jobs()) - 1
+                made = [job, *(_copies_of(folders.root, job)[:more] if more else [])]
+                self._add(made, arrival, inbox / arrival.side if arrival.side else None)
 
     def _check_room(self) -> None:
         floor_mb, root = self.settings.keep.free_mb, self._desk.folders.root
@@ -108,18 +123,28 @@ class Arrivals:
             with_wishes(self.settings, wishes, machine, place)
         return said, wishes
 
-    def _add(self, made: list[str], arrival: Arrival, beside: Path | None, *, recorded: Iterable[str] = ()) -> None:
+    def _counted(self, picture: Path) -> int:
+        """Its pages. Raises FileNotFoundError where another picture has taken its place meanwhile."""
+        before, pages, after = picture.lstat(), self._pages(picture), picture.lstat()
+        if any(getattr(before, each) != getattr(after, each) for each in ("st_ino", "st_size", "st_mtime_ns")):
+            raise FileNotFoundError(errno.ENOENT, "changed while its pages were counted", str(picture))
+        return pages
+
+    def _add(self, made: list[str], arrival: Arrival, beside: Path | None) -> None:
         """The copies' folders first: a job that is recorded has them all. Then the side file, then the record.
 
         made: the job whose folder holds the picture, and those of its copies and pages that are there already, in the
-        order in which they were made: page by page, then the next copy.
+        order in which they were made: page by page, then the next copy. Those that follow are added to it.
+        Raises DiskTrouble, or FileNotFoundError where the picture has been deleted.
         """
         job, folders = made[0], self._desk.folders
         folder = folders.path(job)
-        source = source_of(folder)
-        assert source is not None
         jobs = arrival.jobs()
         for one in jobs[len(made) :]:
+            # The last one's: where no link can be made of somebody else's file, one can of our first copy.
+            source = source_of(folders.path(made[-1]))
+            if source is None:
+                raise FileNotFoundError(errno.ENOENT, "deleted", str(folder))
             files = {ARRIVAL_NAME: one.copy(job).encoded()}
             if (folder / SIDE_NAME).exists():
                 files[SIDE_NAME] = (folder / SIDE_NAME).read_bytes()
@@ -128,9 +153,11 @@ class Arrivals:
             _remove_taken(beside, folder / SIDE_NAME)
         # Not before all of them have their folders: what is recorded is not looked at again after a cut.
         for each, one in zip(made, jobs, strict=True):
-            if each not in recorded and arrival.twin:
+            if self._desk.journal.job(each) is not None:
+                continue
+            if arrival.twin:
                 self._desk.add_dropped(each, one.called, _TWIN.format(twin=arrival.twin))
-            elif each not in recorded:
+            else:
                 self._desk.add(each, one.called, bound_to=arrival.machine)
         self._remember(made)
 

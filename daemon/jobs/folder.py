@@ -9,7 +9,7 @@ import re
 import shutil
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from daemon.durable import PART, sync_folder, whole_file
@@ -85,7 +85,10 @@ class JobFolders:
                 sync_folder(folder)
                 sync_folder(self.root)
                 _take_from_elsewhere(picture, folder)
-            sync_folder(picture.parent)
+        # From here on it is the job's: what cannot be made durable is told when the job is recorded.
+        with suppress(OSError):
+            for changed in (picture.parent, folder, self.root):
+                sync_folder(changed)
         return folder.name
 
     def copy(self, picture: Path, beside: Mapping[str, bytes] | None = None, *, name: str = "") -> str:
@@ -97,6 +100,8 @@ class JobFolders:
         with self._new_folder(Path(name) if name else picture, beside or {}) as folder:
             put = _link_or_copy if picture.parent.parent == self.root else _copy_durably
             put(picture, folder / _source_name(picture))
+            sync_folder(folder)
+            sync_folder(self.root)
         return folder.name
 
     def finish_claims(self, inbox: Path) -> None:
@@ -127,11 +132,8 @@ class JobFolders:
                     with whole_file(folder / name) as file:
                         file.write(data)
                 yield folder
-                sync_folder(folder)
-                sync_folder(self.root)
             except OSError:
-                if source_of(folder) is None:
-                    shutil.rmtree(folder, ignore_errors=True)
+                shutil.rmtree(folder, ignore_errors=True)
                 raise
 
     def _make(self, stem: str) -> Path:
@@ -154,7 +156,9 @@ def _take_from_elsewhere(picture: Path, folder: Path) -> None:
     except OSError:
         hidden.rename(picture)
         raise
-    hidden.unlink()
+    # The next start does it where it cannot be done now.
+    with suppress(OSError):
+        hidden.unlink()
 
 
 def _link_or_copy(picture: Path, copy: Path) -> None:

@@ -125,7 +125,8 @@ class Retention:
         going = self._desk.folders.root.parent / (_GOING + folder.name)
         folder.rename(going)
         shutil.rmtree(going)
-        self._sizes[job_id] = 0
+        # The share of the others in a file that they had in common has grown.
+        self._sizes.clear()
         self._desk.say("the folder of a job that is over was removed to keep within [keep]", removed=job_id)
 
 

@@ -30,3 +30,8 @@ def bench(tmp_path: Path, shared_pool: Pool) -> Iterator[Bench]:
 @pytest.fixture(params=["same disk", "other disk"])
 def cuts(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Cuts:
     return Cuts(monkeypatch, other_disk=request.param == "other disk")
+
+
+@pytest.fixture(params=["same disk", "other disk"])
+def full_disk(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Cuts:
+    return Cuts(monkeypatch, other_disk=request.param == "other disk", full=True)

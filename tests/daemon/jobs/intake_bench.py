@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from daemon.config import Options, Settings, load_settings
+from daemon.errors import DiskFull, DiskTrouble
 from daemon.intake.rank import rank
 from daemon.jobs.allotment import Allotment
 from daemon.jobs.arrivals import Arrivals
@@ -56,6 +57,15 @@ class Intake:
         return [job.state.value for job in self.journal.jobs()]
 
 
+def _when_there_is_room(intake: Intake, take: Callable[[Intake], None]) -> None:
+    """The daemon that has met the full disk goes on; nothing is left to its next start."""
+    intake.arrivals.finish()
+    if [path for path in intake.inbox.iterdir() if path.suffix != ".toml" and not path.name.startswith(".")]:
+        take(intake)
+    known = {job.id for job in intake.journal.jobs()}
+    assert known == {path.name for path in intake.folders.root.iterdir()}
+
+
 def _silent(*_: Any, **__: Any) -> None:
     pass
 
@@ -67,9 +77,9 @@ class Cut(BaseException):
 class Cuts:
     """Counts the changes of files and of the journal; the one that is set for it does not happen any more."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, other_disk: bool) -> None:
-        """other_disk: the inbox lies on another one than the jobs."""
-        self._left = -1
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, other_disk: bool, full: bool = False) -> None:
+        """other_disk: the inbox lies on another one than the jobs. full: only the disk is, for this one change."""
+        self._left, self._full = -1, full
         rename = Path.rename
 
         def across(path: Path, target: Path) -> Path:
@@ -78,7 +88,8 @@ class Cuts:
             return rename(path, target)
 
         monkeypatch.setattr(Path, "rename", self._counted(across if other_disk else rename))
-        for name in ("unlink", "mkdir", "hardlink_to"):
+        # What is taken away needs no room.
+        for name in ("mkdir", "hardlink_to") if full else ("unlink", "mkdir", "hardlink_to"):
             monkeypatch.setattr(Path, name, self._counted(getattr(Path, name)))
         monkeypatch.setattr(os, "fsync", self._counted(lambda descriptor: None))
         for record in ("add", "adopt", "step"):
@@ -87,7 +98,11 @@ class Cuts:
     def _counted(self, work: Callable[..., Any]) -> Callable[..., Any]:
         def step(*args: Any, **options: Any) -> Any:
             if self._left == 0:
-                raise Cut
+                if not self._full:
+                    raise Cut
+                self._left = -1
+                # Of the journal: what it makes of a full disk.
+                raise DiskFull("no room") if args and isinstance(args[0], Journal) else OSError(errno.ENOSPC, "no room")
             self._left -= 1
             return work(*args, **options)
 
@@ -113,11 +128,13 @@ class Cuts:
             self._left = steps
             try:
                 take(intake)
-            except Cut:
+            except (Cut, DiskTrouble):
                 finished = False
             else:
-                finished = True
+                finished = self._left >= 0
             self._left = -1
+            if self._full:
+                _when_there_is_room(intake, take)
             intake.journal.close()
             after(root)
             if finished:

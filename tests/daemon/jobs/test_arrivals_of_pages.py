@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -9,9 +11,10 @@ import pytest
 from daemon.config import Keep
 from daemon.intake.pages import UNCOUNTED
 from daemon.jobs.arrival import ARRIVAL_NAME, Arrival, arrival_in, keep_page, page_in
+from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.choices import Choices
 from daemon.jobs.folder import source_of
-from daemon.jobs.retention import Retention
+from daemon.jobs.retention import EVERY_S, Retention
 from daemon.jobs.states import State
 from daemon.jobs.wishes import SIDE_NAME
 from tests.daemon.jobs.intake_bench import Cuts, Intake
@@ -56,9 +59,19 @@ def test_each_copy_is_drawn_page_by_page_with_its_wishes(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("said", [b"", WISHES], ids=["once", "two copies"])
 def test_no_cut_loses_or_doubles_a_page(tmp_path: Path, cuts: Cuts, said: bytes) -> None:
+    cuts.everywhere(tmp_path, lambda root: book_in(root, said), take, all_of_it(said), changes=range(24, 500))
+
+
+@pytest.mark.parametrize("said", [b"", WISHES], ids=["once", "two copies"])
+def test_a_disk_that_is_full_in_between_loses_or_doubles_no_page(tmp_path: Path, full_disk: Cuts, said: bytes) -> None:
+    full_disk.everywhere(tmp_path, lambda root: book_in(root, said), take, all_of_it(said), changes=range(24, 500))
+
+
+def all_of_it(said: bytes) -> Callable[[Path], None]:
+    """What has to be true after the next start."""
     copies = 2 if said else 1
 
-    def after_the_cut(root: Path) -> None:
+    def after_the_start(root: Path) -> None:
         intake = Intake(root, pages=PAGES)
         intake.recover()
         if (intake.inbox / "plan.pdf").exists():
@@ -72,7 +85,45 @@ def test_no_cut_loses_or_doubles_a_page(tmp_path: Path, cuts: Cuts, said: bytes)
         assert len(list(intake.folders.root.iterdir())) == PAGES * copies
         intake.journal.close()
 
-    cuts.everywhere(tmp_path, lambda root: book_in(root, said), take, after_the_cut, changes=range(24, 500))
+    return after_the_start
+
+
+def test_a_picture_that_is_deleted_while_the_disk_is_full_holds_up_nothing(tmp_path: Path) -> None:
+    intake = book_in(tmp_path)
+    made = [intake.folders.take(intake.inbox / "plan.pdf", {})]
+    intake.arrivals._unfinished.append((made, Arrival("plan.pdf", "", 1, pages=PAGES), None))
+    shutil.rmtree(intake.folders.path(made[0]))
+    intake.arrivals.finish()
+    assert intake.arrivals._unfinished == []
+
+
+def test_a_document_that_becomes_another_one_while_it_is_counted_is_not_taken(tmp_path: Path) -> None:
+    intake = book_in(tmp_path)
+
+    def counted(picture: Path) -> int:
+        (tmp_path / "new").write_bytes(b"another")
+        (tmp_path / "new").rename(picture)
+        return 1
+
+    with pytest.raises(FileNotFoundError):
+        Arrivals(intake.desk, intake.settings, pages=counted).take(intake.inbox / "plan.pdf", None)
+    assert (intake.inbox / "plan.pdf").read_bytes() == b"another"
+    assert intake.states() == []
+
+
+def test_of_somebody_elses_file_one_copy_is_made_for_all_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    link = Path.hardlink_to
+
+    def protected(path: Path, target: Path) -> None:
+        if target.parent.name.startswith("000001-"):
+            raise PermissionError(1, "Operation not permitted")
+        link(path, target)
+
+    monkeypatch.setattr(Path, "hardlink_to", protected)
+    intake = book_in(tmp_path)
+    take(intake)
+    sources = [source_of(intake.folders.path(job.id)) for job in intake.journal.jobs()]
+    assert [source.stat().st_nlink for source in sources if source] == [1, 2, 2]
 
 
 def test_the_one_file_counts_once_for_what_is_kept(tmp_path: Path) -> None:
@@ -84,6 +135,20 @@ def test_the_one_file_counts_once_for_what_is_kept(tmp_path: Path) -> None:
             intake.desk.step(job.id, state)
     Retention(intake.desk, Keep(jobs_mb=4)).turn()
     assert len(list(intake.folders.root.iterdir())) == PAGES
+
+
+def test_what_is_left_of_the_pages_has_the_whole_file(tmp_path: Path) -> None:
+    intake, clock = Intake(tmp_path, pages=PAGES), [0.0]
+    (intake.inbox / "plan.pdf").write_bytes(bytes(3_000_000))
+    take(intake)
+    for job in intake.journal.jobs():
+        for state in (State.PLANNING, State.PLANNED, State.DRAWING, State.DONE):
+            intake.desk.step(job.id, state)
+    retention = Retention(intake.desk, Keep(jobs_mb=2.5), now=lambda: clock[0], wall=lambda: 2e9 + clock[0])
+    for left in (2, 1):
+        retention.turn()
+        assert len(list(intake.folders.root.iterdir())) == left
+        clock[0] += EVERY_S
 
 
 def test_where_no_links_can_be_made_the_file_is_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
