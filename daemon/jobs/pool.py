@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import selectors
 import signal
 import subprocess
@@ -23,6 +24,11 @@ PLANNER = "daemon.jobs.planner"
 _ROOT = Path(daemon.__file__).parent.parent
 _LAST_WORDS_BYTES = 4096
 _LARGE_BYTES = str(1 << 20)
+_OUT_OF_MEMORY = re.compile(
+    "MemoryError|bad_alloc|bad allocation|Insufficient memory|Cannot allocate memory|Failed to allocate memory|"
+    "can't start new thread"
+)
+"""Last words of Python, C++, OpenCV, the kernel, the network's library, and threads that found no room for a stack."""
 
 
 class Pool:
@@ -103,10 +109,7 @@ class Pool:
             answer = self._answer(request, progress, planned)
             if answer.get("words") == "out of memory":
                 self._drop()
-                limit_mb = self.settings.planning.memory_mb
-                raise PlanningFailed(
-                    f"planning needs more than {limit_mb} MB: scale the picture down or raise memory_mb"
-                )
+                raise _out_of_memory(self.settings.planning.memory_mb)
         if "failed" in answer:
             raise getattr(errors, answer["failed"])(answer["words"])
 
@@ -144,6 +147,10 @@ class Pool:
             worker.end()
 
 
+def _out_of_memory(limit_mb: int) -> PlanningFailed:
+    return PlanningFailed(f"planning needs more than {limit_mb} MB: scale the picture down or raise memory_mb")
+
+
 class _Worker:
     """One process. Every way in which it can end is said as PlanningFailed, with its last words."""
 
@@ -179,6 +186,7 @@ class _Worker:
         self._in, self._out, self._err = self._process.stdin, self._process.stdout, self._process.stderr
         self._heard = b""
         self._last_words = b""
+        self._memory_mb = limits.memory_mb
 
     @property
     def alive(self) -> bool:
@@ -227,6 +235,8 @@ class _Worker:
         code = self._process.wait()
         self._last_words += self._err.read() or b""
         said = self._last_words.decode("utf-8", "backslashreplace").strip().rpartition("\n")[2]
+        if _OUT_OF_MEMORY.search(said):
+            return _out_of_memory(self._memory_mb)
         how = f"was killed by {signal.Signals(-code).name}" if code < 0 else f"ended with {code}"
         return PlanningFailed(
             f"the planning process {how}{' after saying ' + said if said else ''}: try another picture"

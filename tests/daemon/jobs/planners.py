@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import json
 import os
@@ -9,6 +10,9 @@ import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
+
+import cv2
+import numpy as np
 
 from daemon.config import Settings
 from daemon.errors import BadPicture
@@ -91,6 +95,14 @@ def _eat() -> None:
         eaten.append(bytearray(16 << 20))
 
 
+def _eat_in_cpp() -> None:
+    ctypes.CDLL("libstdc++.so.6")["_ZSt17__throw_bad_allocv"]()
+
+
+def _eat_in_opencv() -> None:
+    cv2.resize(np.zeros((9, 9), np.uint8), (32_000, 32_000))
+
+
 def _fill() -> None:
     with open("/dev/full", "w", buffering=1) as full:
         full.write("no room\n")
@@ -108,6 +120,8 @@ WAYS: dict[str, Callable[[], None]] = {
     "crash": _crash,
     "hang": _hang,
     "eat": _eat,
+    "eat in C++": _eat_in_cpp,
+    "eat in OpenCV": _eat_in_opencv,
     "fill": _fill,
     "refuse": _refuse,
     "mistake": _mistake,

@@ -14,6 +14,7 @@ from daemon.errors import BadPicture, DiskTrouble, LinedrawError, PlanningFailed
 from daemon.jobs.pool import Pool
 
 PLANNER = "tests.daemon.jobs.planners"
+NEEDS_MORE = "planning needs more than 256 MB: scale the picture down or raise memory_mb"
 
 
 def settings_with(folder: Path, **planning: float) -> Settings:
@@ -54,7 +55,9 @@ def test_the_worker_gives_way_to_the_machine_and_phones_nobody(pool: Pool, tmp_p
     [
         ("bad", BadPicture, "source.png is no picture: drop another"),
         ("crash", PlanningFailed, "the planning process was killed by SIGSEGV: try another picture"),
-        ("eat", PlanningFailed, "planning needs more than 256 MB: scale the picture down or raise memory_mb"),
+        ("eat", PlanningFailed, NEEDS_MORE),
+        ("eat in C++", PlanningFailed, NEEDS_MORE),
+        ("eat in OpenCV", PlanningFailed, NEEDS_MORE),
         ("fill", DiskTrouble, "No space left on device: free the disk"),
         ("mistake", PlanningFailed, "ended with 1 after saying KeyError: 'a mistake in the planner'"),
     ],
