@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from daemon.page.back import noted
 from daemon.page.tones import reduced
@@ -19,13 +20,18 @@ _LEAST_DEGREES, _MOST_DEGREES = 0.3, 5.0
 _ALIKE_DEGREES = 0.25
 _LEAST_ALIKE = 0.75
 """So much of the length of all straight lines must lean alike, level and plumb lines taken together."""
+_FRAME = 2
+"""So many lines inside the picture that are level or plumb already say that the others lean on purpose."""
+_RIM_SHARE = 0.02
+"""A scanner's edge is always level: what lies so near to the picture's border, in shares of its side, says nothing."""
 
 
 def level(page: PageImage) -> PageImage:
     """The page turned so that its long straight lines, drawn or printed, are level or plumb; else the page itself.
 
     page: its sheet straightened where that was seen. Turned only where six lines or more, and three quarters of the
-    length of all of them, lean by the same 0.3 to 5 degrees: no picture is so skew that was not meant to be.
+    length of all of them, lean by the same 0.3 to 5 degrees and hardly one is level or plumb already, as the frame of a
+    slanting hatch is: no picture is so skew that was not meant to be.
     """
     degrees = _skew(reduced(page.grey, _LOOK_PX)) if min(page.grey.shape) >= _LEAST_PX else 0.0
     if not degrees:
@@ -50,8 +56,17 @@ def _skew(small: Grey) -> float:
     near = np.abs(leans[:, None] - leans[None]) <= _ALIKE_DEGREES
     alike = near[int((near * lengths).sum(axis=1).argmax())]
     degrees = float(np.average(leans[alike], weights=lengths[alike]))
+    if _count(lines[~alike & (np.abs(leans) <= _ALIKE_DEGREES) & _inside(lines, small)], 0.0, small) >= _FRAME:
+        return 0.0
     clear = lengths[alike].sum() >= _LEAST_ALIKE * lengths.sum() and _count(lines[alike], degrees, small) >= _FEWEST
     return degrees if clear and _LEAST_DEGREES <= abs(degrees) <= _MOST_DEGREES else 0.0
+
+
+def _inside(lines: Points, small: Grey) -> NDArray[np.bool_]:
+    """Which of them do not lie along the border."""
+    ends, size = lines.reshape(-1, 2, 2), np.array(small.shape[::-1])
+    rim = _RIM_SHARE * size.max()
+    return np.asarray(((ends.max(axis=1) > rim) & (ends.min(axis=1) < size - rim)).all(axis=1))
 
 
 def _count(lines: Points, degrees: float, small: Grey) -> int:

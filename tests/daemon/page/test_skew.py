@@ -69,9 +69,19 @@ def by_a_hand() -> Grey:
     return inked([by_hand(line, random, wobble_px=6.0) for line in turned(PLAN, 2.0)])
 
 
+FRAME = [np.array(line, float) for line in ([(100, 60), (700, 60)], [(100, 540), (700, 540)], [(0, 580), (800, 580)])]
+HATCH = turned([np.array([[150.0, y], [650.0, y]]) for y in range(120, 500, 20)], 3)
+
+
+def test_the_edges_of_a_scanner_are_level_on_every_page() -> None:
+    edges = [np.array(line, float) for line in ([(0, 3), (800, 3)], [(0, 596), (800, 596)], [(3, 0), (3, 600)])]
+    assert level(page(inked(HATCH + edges))).steps
+
+
 @pytest.mark.parametrize(
     "grey",
     [
+        pytest.param(inked(HATCH + FRAME), id="a slanting hatch in a level frame"),
         pytest.param(inked(PLAN), id="a level plan"),
         pytest.param(inked(turned(PLAN, 0.1)), id="hardly skew"),
         pytest.param(inked(turned(PLAN, 45)), id="at 45 degrees"),
