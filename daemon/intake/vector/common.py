@@ -60,7 +60,7 @@ class Collected:
     points: int = 0
 
     def add(self, line: Points, colour: Rgb = BLACK) -> None:
-        self.count(len(line))
+        self.points = checked_points(self.points + len(line))
         if not (np.abs(line) < _BEYOND_MM).all():
             raise ValueError("holds a number that is beyond every sheet: draw it anew at its own size")
         self.lines.append(line)
@@ -72,10 +72,12 @@ class Collected:
         self.colours = [colour for some, colour in zip(parts, self.colours, strict=True) for _ in some]
         self.lines = [part for some in parts for part in some]
 
-    def count(self, points: int) -> None:
-        self.points += points
-        if self.points > MOST_POINTS:
-            raise ValueError(f"holds more than {MOST_POINTS} points of lines: simplify it")
+
+def checked_points(count: int) -> int:
+    """So many points of lines, once they are not too many. Raises ValueError."""
+    if count > MOST_POINTS:
+        raise ValueError(f"holds more than {MOST_POINTS} points of lines: simplify it")
+    return count
 
 
 def left_out(count: int, one: str, several: str) -> list[str]:

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from daemon.colours import BLACK, Rgb
-from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, chords_of_bezier, clipped, left_out
+from daemon.intake.vector.common import FLAT_MM, Collected, Vectors, checked_points, chords_of_bezier, clipped, left_out
 from daemon.intake.vector.dashes import dashed
 from daemon.intake.vector.svg_units import Matrix
 from daemon.shapes import Points
@@ -43,7 +43,7 @@ class Reading:
     def __init__(self, raw: Any, sheet: Any, to_mm: Matrix) -> None:
         self._c, self._sheet, self._to_mm = raw, sheet, to_mm
         self._collected = Collected()
-        self._white = 0
+        self._white = self._segments = 0
 
     def vectors(self, size_mm: tuple[float, float]) -> Vectors | None:
         """All lines of the page; None where it holds something else. Raises ValueError where it holds too much."""
@@ -114,7 +114,7 @@ class Reading:
     def _runs(self, each: Any, to_mm: Matrix, *, close: bool) -> list[Points]:
         c = self._c
         segments = range(c.FPDFPath_CountSegments(each))
-        self._collected.count(len(segments))
+        self._segments = checked_points(self._segments + len(segments))
         return _flat((self._segment(c.FPDFPath_GetPathSegment(each, index)) for index in segments), to_mm, close=close)
 
     def _segment(self, segment: Any) -> tuple[str, tuple[float, float], bool]:

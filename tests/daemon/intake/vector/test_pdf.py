@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from daemon.errors import BadPicture
 from daemon.intake.picture import open_picture
-from daemon.intake.vector import pdf_paths
+from daemon.intake.vector import common, pdf_paths
 from daemon.intake.vector.common import Rendered, Vectors
 from daemon.intake.vector.pdf import pages_of_pdf, read_pdf
 from daemon.intake.vector.sheet import as_page
@@ -167,6 +167,14 @@ def beside(some: NDArray[np.bool_], others: NDArray[np.bool_]) -> float:
     return float((some & near).sum() / some.sum())
 
 
+def test_the_points_of_a_path_count_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(common, "MOST_POINTS", 30)
+    zigzag = [f"{k} {k % 2} l" for k in range(1, 31)]
+    assert len(read(pdf([f"0 0 m {' '.join(zigzag[:29])} S"])).lines) == 1
+    with pytest.raises(ValueError, match="holds more than 30 points"):
+        read(pdf([f"0 0 m {' '.join(zigzag)} S"]))
+
+
 def test_what_is_white_or_only_a_clip_is_left_out() -> None:
     found = read(pdf(["1 g 0 0 72 144 re f 0 0 30 30 re W n 0 10 m 72 10 l S"]))
     assert found.warnings == ("1 white shape is left out",)
@@ -255,5 +263,7 @@ def test_without_the_library_the_command_that_installs_it_is_said(
 ) -> None:
     (tmp_path / "a.pdf").write_bytes(pdf([""]))
     monkeypatch.setitem(sys.modules, "pypdfium2", None)
-    with pytest.raises(BadPicture, match=r"pypdfium2 is not installed: save it as SVG or PNG; .*pip install 'linedrawd\[pdf\]'"):
+    with pytest.raises(
+        BadPicture, match=r"pypdfium2 is not installed: save it as SVG or PNG; .*pip install 'linedrawd\[pdf\]'"
+    ):
         open_picture(tmp_path / "a.pdf")
