@@ -1,7 +1,7 @@
 """A program that answers like scanimage, as it has been told to: plan.json beside it, one turn a scan.
 
 A turn: {"pages": how many, "status": exit code, "words": what it says on stderr, "then": "hang" | "crash" | "page half
-written"}. Every call is noted in calls.txt; "died" in it says that SIGINT has ended a scan.
+written" | "child stays"}. Every call is noted in calls.txt; "died" in it says that SIGINT has ended a scan.
 """
 
 import json
@@ -45,6 +45,10 @@ def scan(batch: str) -> None:
     then = told.get("then")
     if then == "page half written":
         Path(batch % 99).with_suffix(".tiff.part").write_bytes(b"II")
+    if then == "child stays":
+        if (child := os.fork()) == 0:
+            signal.pause()
+        note(f"child {child}")
     if then == "crash":
         signal.signal(signal.SIGABRT, signal.SIG_DFL)
         os.abort()

@@ -193,6 +193,17 @@ def test_a_scanner_that_gives_nothing_is_stopped_gently_then_by_force(tmp_path: 
         assert scans.pages == ["scan-20261124-125043-1.tiff"]
 
 
+def test_what_the_driver_has_started_ends_with_it(tmp_path: Path) -> None:
+    with fake(tmp_path, {"then": "child stays"}) as scans:
+        scans.scanner.scan()
+        stat = Path(f"/proc/{scans.calls[-1].removeprefix('child ')}/stat")
+    for _ in range(3000):
+        if not stat.exists() or ") Z " in stat.read_text():
+            return
+        threading.Event().wait(0.01)
+    pytest.fail("the child of the driver lives on")
+
+
 def test_parts_of_pages_are_removed(tmp_path: Path) -> None:
     with fake(tmp_path, {"pages": 1, "then": "page half written"}) as scans:
         scans.scanner.scan()
