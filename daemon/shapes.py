@@ -61,6 +61,8 @@ class PageImage:
     """What of it lies outside the range that is worked in, in plain words."""
     hatching: tuple[Points, ...] = ()
     """Lines in px that are drawn beside those of the page: they fill its areas."""
+    fills: tuple[Points, ...] = ()
+    """Lines in px that ink small areas full, of which the page shows the rims: each is to be drawn with its rim."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from daemon.components import components
 from daemon.graph.anchors import anchored
 from daemon.graph.bends import sharpened
+from daemon.graph.blots import led_in
 from daemon.graph.crossings import Lines, unmelted
 from daemon.graph.feedback import Adaptation
 from daemon.graph.hubs import hubs
@@ -48,6 +49,7 @@ class _Ink:
 
     blots: (B, 6), what is larger than a dot and no area: its middle in px, and its box as left, top, width and height.
     levels: float32 (256,), how much of a pixel of each grey level is inked, 0..1.
+    fills: lines that ink the insides of what the page shows the rims of.
     """
 
     lines: Mask
@@ -57,6 +59,7 @@ class _Ink:
     specks: int
     grey: Grey
     levels: Floats32
+    fills: tuple[Points, ...]
 
     def shades(self) -> Map:
         """How much of each pixel is inked: large, so nobody keeps it."""
@@ -122,7 +125,7 @@ def _ink_of(page: PageImage) -> _Ink:
     lines &= mask
     middles = centres[dots]
     about = np.concatenate([centres[blots], stats[blots, :4]], axis=1)
-    return _Ink(lines, middles, about, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask))
+    return _Ink(lines, middles, about, width_px, int(dirt.sum()), page.grey, _levels(page.grey, mask), page.fills)
 
 
 def _levels(grey: Grey, mask: Mask) -> Floats32:
@@ -205,12 +208,13 @@ def _on_ridge(
 
 
 def _filled(lines: Lines, ink: _Ink) -> Lines:
-    """The edges, and more where lines have melted into an area that they do not cover."""
+    """The edges, and more where lines have melted into an area that they do not cover, or ink the inside of a rim."""
     polylines, ends, vertices = fillings(ink.lines, lines.polylines, width_px=ink.width_px)
     ends, vertices = ends + len(lines.vertices), np.concatenate([lines.vertices, vertices])
     polylines, ends = tied(polylines, ends, lines.ends, vertices, within_px=1.5 * ink.width_px + 2.0)
     sound = [np.zeros(len(polyline), bool) for polyline in polylines]
-    return Lines(lines.polylines + polylines, lines.sound + sound, np.concatenate([lines.ends, ends]), vertices)
+    covered = Lines(lines.polylines + polylines, lines.sound + sound, np.concatenate([lines.ends, ends]), vertices)
+    return led_in(ink.fills, covered, width_px=ink.width_px) if ink.fills else covered
 
 
 def _edges(lines: Lines, response: Map) -> list[Edge]:

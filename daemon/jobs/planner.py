@@ -242,7 +242,7 @@ def _strokes(graph: LineGraph, page: PageImage, settings: Settings) -> Drawing:
     height_px, width_px = page.grey.shape
     as_in_paper = settings.planning.graph == "paper"
     drawing = strokes(graph, width_px=width_px, height_px=height_px, mode="paper" if as_in_paper else "fewest")
-    return replace(drawing, strokes=(*drawing.strokes, *map(Stroke, page.hatching)))
+    return replace(drawing, strokes=(*drawing.strokes, *map(Stroke, page.hatching + page.fills * as_in_paper)))
 
 
 def _layout(page: PageImage, settings: Settings, machine: Machine, *, sized: bool) -> Layout:

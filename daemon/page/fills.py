@@ -37,11 +37,11 @@ def hollow(page: PageImage, *, fill: Fill = "outline") -> PageImage:
     inside, count = _insides(ink_mask(page.grey), page.line_width_px)
     if not count:
         return page
-    bare = inside if fill != "skip" else _grown(inside, page.line_width_px + _RIM_PX)
+    bare = inside if fill != "skip" else grown(inside, page.line_width_px + _RIM_PX)
     done = "hatched" if isinstance(fill, Hatch) else _WORDS[fill]
     words = f"{count} filled {'area is' if count == 1 else 'areas are'} {done}"
     step = Step(words, reduced(page.grey, _SHOWN_PX))
-    lines = fill.lines(inside, _grown(inside, page.line_width_px / 2)) if isinstance(fill, Hatch) else ()
+    lines = fill.lines(inside, grown(inside, page.line_width_px / 2)) if isinstance(fill, Hatch) else ()
     return replace(page, grey=_blank(page.grey, bare), steps=(*page.steps, step), hatching=lines)
 
 
@@ -65,7 +65,8 @@ def _insides(ink: Mask, width_px: float) -> tuple[Mask, int]:
     return np.asarray(filled[labels]), int(filled.sum())
 
 
-def _grown(mask: Mask, by_px: float) -> Mask:
+def grown(mask: Mask, by_px: float) -> Mask:
+    """The mask and what lies no farther from it."""
     side = 2 * int(np.ceil(by_px)) + 1
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
     return np.asarray(cv2.dilate(mask.view(np.uint8), disc)).view(np.bool_)

@@ -10,6 +10,7 @@ from daemon.ink import Mask
 from daemon.shapes import Points
 
 _STEP_PX = 0.5
+_GAP_PX = 2.0
 _LEAST_PX = 0.5
 """Spacing: below it the area is full long since."""
 _MOST_APART = 4.0
@@ -24,15 +25,17 @@ class Hatch:
     angle_deg: float = 45.0
     cross: bool = False
 
-    def lines(self, inside: Mask, around: Mask) -> tuple[Points, ...]:
+    def lines(self, inside: Mask, around: Mask, *, apart_px: float | None = None) -> tuple[Points, ...]:
         """What fills the areas, each (N, 2) in px.
 
         inside: bool (H, W), the areas. around: the same and their rims, within which one line goes on into the next.
+        apart_px: so long a way may be that leads from one line into the next; four spacings unless it is said.
         """
         angles = [self.angle_deg, self.angle_deg + 90][: 2 if self.cross else 1]
         spacing_px = max(self.spacing_px, _LEAST_PX)
+        most_px = _MOST_APART * spacing_px if apart_px is None else apart_px
         rows = [_rows(inside, angle, spacing_px) for angle in angles]
-        return tuple(line for each in rows for line in _connected(each, around, _MOST_APART * spacing_px))
+        return tuple(line for each in rows for line in _connected(each, around, most_px))
 
 
 def _rows(inside: Mask, angle_deg: float, spacing_px: float) -> list[list[Points]]:
@@ -52,9 +55,11 @@ def _rows(inside: Mask, angle_deg: float, spacing_px: float) -> list[list[Points
 
 
 def _pieces(inside: Mask, points: Points) -> list[Points]:
-    """The runs of points that lie inside, as (first, last)."""
+    """The runs of points that lie inside, as (first, last); along a slanted edge pixels leave gaps that are none."""
     held = np.concatenate([[False], _within(inside, points), [False]])
     edges = np.flatnonzero(np.diff(held.astype(np.int8)))
+    apart = np.diff(edges)[1::2] * _STEP_PX > _GAP_PX
+    edges = edges[np.concatenate([[True], np.repeat(apart, 2), [True]])] if len(edges) else edges
     return [points[[first, end - 1]] for first, end in zip(edges[::2], edges[1::2], strict=True) if end - first > 1]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from daemon.page.blots import rimmed
 from daemon.page.dark import turn_dark
 from daemon.page.dirt import clean_paper
 from daemon.page.fills import Fill, hollow
@@ -47,7 +48,7 @@ def fit(page: PageImage, *, fill: Fill = "outline", merge: bool = True) -> PageI
     fitted = fit_line_width(merge_overdrawn(page) if merge else page)
     if isinstance(fill, Hatch):
         fill = replace(fill, spacing_px=fill.spacing_px * fitted.grey.shape[1] / page.grey.shape[1])
-    return hollow(warned_of_size(fitted), fill=fill)
+    return rimmed(hollow(warned_of_size(fitted), fill=fill))
 
 
 def even_out(page: PageImage) -> PageImage:

@@ -78,7 +78,7 @@ _DRAWN = {
     "Writing and music": (
         _own("script.png", "Joined-up writing, and the dot."),
         _of_set("words.png", "The same with a ball pen, scanned at 300 dpi.", scanned.scans, 16),
-        _png("music.png", "Two staves: the filled heads of the notes are small, and scribbled full.", sheets.music),
+        _png("music.png", "Two staves: the filled heads of the notes are inked to and fro.", sheets.music),
     ),
     "Plans and technical drawings": (
         _own("floor_plan.png", "A flat with doors and stairs."),
@@ -118,7 +118,7 @@ _HARD = {
         _png("hills.png", "A filled sun and hill: their outlines; what stays bare of them counts against F1.",
              sheets.hills),
         _own("dot_and_dash.png", "A dashed way and dots stay dashes and dots."),
-        _png("dominoes.png", "Tiles: their filled eyes are small, and scribbled full.", sheets.dominoes),
+        _png("dominoes.png", "Tiles: each filled eye is one stroke, round its rim and to and fro.", sheets.dominoes),
     ),
 }  # fmt: skip
 

@@ -92,3 +92,18 @@ def test_a_hatch_is_as_fine_on_paper_as_the_settings_say(settings: Settings, tmp
     (hatched,) = [line for line in lines if 10 < len(line) < 100 and np.abs(line - 300).max() < 180]
     rows = np.unique(hatched[:, 1].round(1))
     assert np.diff(rows) / 10 == pytest.approx(2.0, abs=0.05)
+
+
+@pytest.mark.parametrize("graph", ["repaired", "paper"])
+def test_a_blot_is_inked_full_whatever_becomes_of_areas(settings: Settings, tmp_path: Path, graph: str) -> None:
+    """A filled disc of 8 line widths in a frame; areas are skipped, and there is none."""
+    grey = np.full((300, 300), 255, np.uint8)
+    cv2.rectangle(grey, (10, 10), (290, 290), 0, 5)
+    cv2.circle(grey, (150, 150), 20, 0, -1)
+    cv2.imwrite(str(tmp_path / "source.png"), grey)
+    planning = settings.planning.model_copy(update={"fill": "skip", "graph": graph})
+    plan_picture(tmp_path / "source.png", tmp_path, settings.model_copy(update={"planning": planning}), "plotter")
+    strokes = read(tmp_path / "strokes.json")["strokes"]
+    drawn = np.full((300, 300), 255, np.uint8)
+    cv2.polylines(drawn, [np.rint(stroke).astype(np.int32) for stroke in strokes], False, 0, 5)
+    assert (drawn[135:166, 140:161] < 128).mean() > 0.9
