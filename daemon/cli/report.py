@@ -17,6 +17,7 @@ from daemon.cli import doctor
 from daemon.cli.options import add_places, read_file, settings_of
 from daemon.errors import LinedrawError
 from daemon.jobs.folder import is_called
+from daemon.jobs.record import RECORD_NAME
 from daemon.report.bundle import folder_files, tail, without_secrets, write_bundle
 from daemon.status import JOB_LOG_NAME, LOG_NAME
 
@@ -61,8 +62,8 @@ def run(args: argparse.Namespace) -> int:
         "status.json": _plain(settings.paths.status),
         **_of_job(folder, pictures=not args.without_picture),
     }
-    if f"{folder.name}/{JOB_LOG_NAME}" in parts:
-        parts[f"{folder.name}/{JOB_LOG_NAME}"] = _plain(folder / JOB_LOG_NAME)
+    for name in {f"{folder.name}/{JOB_LOG_NAME}", f"{folder.name}/{RECORD_NAME}"} & parts.keys():
+        parts[name] = _plain(folder.parent / name)
     if recording := args.recording or (None if args.without_picture else _of_the_daemon(settings.paths.status)):
         parts["recording.txt"] = _recording(recording)
     told = write_bundle(bundle, {name: part for name, part in parts.items() if part not in (b"", "")})
@@ -102,9 +103,10 @@ def _of_the_daemon(status: Path) -> Path | None:
     return None
 
 
-def _recording(file: Path) -> bytes:
+def _recording(file: Path) -> str:
+    """It begins with the machine's settings."""
     try:
-        return file.read_bytes()
+        return without_secrets(file.read_text(encoding="utf-8", errors="replace"))
     except OSError as error:
         raise LinedrawError(f"{file} cannot be read ({error.strerror}): give the file that --record wrote") from None
 

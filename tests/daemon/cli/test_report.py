@@ -28,8 +28,9 @@ def state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (job / name).write_text(name)
     (tmp_path / "state" / "log" / "linedrawd.log").write_text("started url=tcp://me:hunter2@plotter:23\n")
     (job / "job.log").write_text("the machine is ready port=tcp://me:hunter2@plotter:23\n")
+    (job / "job.json").write_text('{"words": "no machine at tcp://me:hunter2@plotter:23"}')
     (tmp_path / "s.toml").write_text('[machines.m]\nurl = "tcp://me:hunter2@plotter:23"\n')
-    (tmp_path / "plotter.txt").write_text("recorded")
+    (tmp_path / "plotter.txt").write_text('0.0 open {"machine": {"url": "tcp://me:hunter2@plotter:23"}}\n')
     return tmp_path
 
 
@@ -64,7 +65,7 @@ def test_the_recording_that_the_daemon_writes_is_in_it(state: Path, name: str, t
 
 
 def test_no_secret_is_in_it(state: Path) -> None:
-    assert not any(b"hunter2" in part for part in bundle_of(state).values())
+    assert not any(b"hunter2" in part for part in bundle_of(state, "--recording", str(state / "plotter.txt")).values())
 
 
 def test_the_picture_may_be_left_out(state: Path) -> None:
