@@ -8,5 +8,5 @@ it. What stands behind the word is a comment."""
 
 
 def is_pen_change(text: str) -> bool:
-    """Whether a line of a program is one before which the pen is changed."""
-    return text == PEN_CHANGE or text.startswith(f"{PEN_CHANGE} ")
+    """Whether a line of a program is one before which the pen is changed; other programs write it M00, too."""
+    return text.split(" ", 1)[0] in {PEN_CHANGE, "M00"}

@@ -34,9 +34,11 @@ class Job:
         self.verdict = Verdict.FINISHED
         self.position_known = True
         self._next: Leg | None = None
-        self._strokes = strokes_touched([part.stroke for part in parts], len(parts))
-        self._why = sentences.FINISHED
-        self._certain = self._possible = self._accepted = 0
+        strokes = [part.stroke for part in parts]
+        self._strokes = strokes_touched(strokes, len(parts))
+        self._why, self._accepted = sentences.FINISHED, 0
+        # A job that goes on with a drawing begins with a later stroke, maybe after a leg that has none.
+        self._certain = self._possible = strokes_touched(strokes, 0)
 
     def accepted(self, line: int) -> int | None:
         """The job's line that the flow's `line` is, where that is acknowledged for the first time."""

@@ -38,7 +38,8 @@ def from_line(parts: Sequence[Part], path: Path, line: int, *, lifted: Modal) ->
 def from_spot(parts: Sequence[Part], path: Path, spot: Spot, *, lifted: Modal) -> list[Part]:
     """The program from a place on one of its lines on: travel there, lower the pen as the stroke did it, go on drawing.
 
-    A cut outside the drawn part of a stroke begins with the stroke, or behind it when all of it is drawn.
+    A cut outside the drawn part of a stroke begins with the stroke, or behind it when all of it is drawn; the way from
+    there to where the pen is changed is its own.
     """
     line, stroke = spot.line, parts[spot.line].stroke
     if stroke is None:
@@ -46,7 +47,8 @@ def from_spot(parts: Sequence[Part], path: Path, spot: Spot, *, lifted: Modal) -
     mine = [index for index, part in enumerate(parts) if part.stroke == stroke]
     drawing = [index for index in mine if path.steps[index].draws]
     if drawing and line > drawing[-1]:
-        return from_line(parts, path, mine[-1] + 1, lifted=lifted)
+        travels = (index for index in mine if index >= line and _PLANE_WORD.search(path.steps[index].text.upper()))
+        return from_line(parts, path, next(travels, mine[-1] + 1), lifted=lifted)
     ramps = any(_ramps(path.steps[index].move) for index in mine if index <= line)
     if line not in drawing or ramps or path.steps[mine[0]].before.blind:
         return from_line(parts, path, mine[0], lifted=lifted)

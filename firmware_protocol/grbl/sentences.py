@@ -29,7 +29,10 @@ MOTORS_OFF = (
     "or set the pen to its origin and say so"
 )
 WAITING = {
-    "Hold": "somebody pressed feed hold: press cycle start at the controller or let the drawing go on, or stop it",
+    "Hold": (
+        "somebody pressed feed hold, or the program says M0: press cycle start at the controller or let the drawing go "
+        "on, or stop it"
+    ),
     "Door": "the safety door is open: close it, then press cycle start or let the drawing go on, or stop it",
     "Sleep": "the controller sleeps and has switched its motors off: stop the drawing and home the machine",
 }

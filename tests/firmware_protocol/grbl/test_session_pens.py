@@ -71,6 +71,29 @@ def test_a_pause_before_does_not_make_it_forget_the_pen(after_s: float, at_once:
     assert missing_mm(STROKES, pair.sim.ink) <= TOUCHES_MM
 
 
+def test_a_pause_on_the_way_to_where_the_pen_is_changed_does_not_end_it() -> None:
+    pair = Pair(plotter()).ready()
+    pair.session.start(in_two_pens(), pair.now)
+    pair.wait_for(lambda: pair.pen_up and pair.sim.position_mm[1] > 15.0)
+    pair.session.pause(pair.now, at_once=True)
+    assert not pair.until(Paused).change
+    pair.session.resume(pair.now)
+    assert pair.until(Paused).change
+    assert pair.sim.position_mm[:2] == (3.0, 40.0)
+
+
+@pytest.mark.parametrize("at_once", [False, True])
+def test_going_on_stopped_before_its_first_stroke_the_strokes_before_stay_on_the_sheet(at_once: bool) -> None:
+    pair = Pair(plotter()).ready()
+    pair.session.start([line for line in in_two_pens() if line.stroke is None or line.stroke > 2], pair.now)
+    pair.session.pause(pair.now, at_once=at_once)
+    pair.until(Paused)
+    assert (pair.session.strokes_certain, pair.session.strokes_touched) == (3, 3)
+    pair.session.stop(pair.now)
+    end = pair.until(Ended)
+    assert (end.strokes_certain, end.strokes_possible) == (3, 3)
+
+
 def test_stopped_at_the_pen_change_it_keeps_the_place_and_what_is_drawn() -> None:
     pair, _ = changing()
     pair.session.stop(pair.now)
