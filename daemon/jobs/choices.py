@@ -99,7 +99,7 @@ def _pen_at(folder: Path, stroke: int) -> str:
         pen = load_program(folder / "program.gcode").pen_of(stroke)
     except LinedrawError:
         return ""
-    return f": put the {pen} pen in first" if pen else ""
+    return f", with the {pen} pen" if pen else ""
 
 
 def not_placed(station: Station) -> str:

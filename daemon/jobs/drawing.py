@@ -14,7 +14,7 @@ from daemon.jobs.kept_ink import Reports, add_to_report, keep_ink
 from daemon.jobs.moves import Moves, homing
 from daemon.jobs.open_machine import InkMm, Open, OpenMachine
 from daemon.jobs.orders import WITHOUT_MOTION, Asked, MachineOrder, Places, obey
-from daemon.jobs.passes import Passes
+from daemon.jobs.passes import Passes, with_its_pen
 from daemon.jobs.progress import NOTHING_DRAWN, Progress, end_in_words, tell
 from daemon.jobs.promise import Ahead
 from daemon.jobs.retry import IDLE_S, retry_after_s
@@ -213,7 +213,8 @@ class Drawing:
         try:
             # A machine that knows its place is not sent to look for it again.
             without = homing(self._moves) if self._placed else ()
-            program = program_left(job, folder, self._load(folder / "program.gcode"), without=without)
+            whole = self._load(folder / "program.gcode")
+            left = program_left(job, folder, whole, without=without)
         except LinedrawError as error:
             self._desk.step_at_last(job.id, State.FAILED, str(error))
             return
@@ -222,6 +223,7 @@ class Drawing:
             self.station.hold(why)
             self._desk.step_at_last(job.id, State.INTERRUPTED, why, reason=Reason.POSITION_UNKNOWN)
             return
+        program = with_its_pen(left, whole, pen_in=self.station.pen_in, goes_on=job.possible > 0)
         times_s = self._machine.line_times_s(program)
         self._drawn = job.id
         self._passes = Passes(self.station, job.id, program, self._machine.take_ink)
@@ -254,7 +256,7 @@ class Drawing:
     def _record(self, job: Job, program: Program, ended: Ended, *, real_s: float) -> None:
         assert self._machine is not None
         assert self._passes is not None
-        port, (ink, pens) = self._machine.name, self._passes.ink()
+        port, (ink, pens), self._passes = self._machine.name, self._passes.over(ended), None
         known = ended.verdict in _PORT_STAYS_OPEN and ended.position_known
         if not known:
             self._give_back()
@@ -293,6 +295,6 @@ class Drawing:
         if self._passes:
             self._passes.hear(event)
         if isinstance(event, Paused | Resumed) or (isinstance(event, Waiting) and event.cause):
-            stand(event, self._drawn, self.station)
+            stand(event, self._drawn, self.station, pen=self._passes.pen if self._passes else "")
         elif not isinstance(event, Accepted):
             tell(event, say=self.station.say, show=self.station.show)

@@ -9,6 +9,7 @@ from typing import Any
 
 from daemon.jobs.states import ink_in_words
 from daemon.shapes import Program
+from firmware_protocol.pens import is_pen_change
 from firmware_protocol.session import Accepted, Ended, Event, Found, Paused, Resumed, Sent, Verdict, Waiting
 
 AHEAD = 18
@@ -38,7 +39,11 @@ class Progress:
         self._show, self._times_s, self._now = show, line_times_s, now
         self._line, self._begun_s, self._done_s = -1, 0.0, 0.0
         self._paused = False
-        last_line = {line.stroke: number for number, line in enumerate(program.lines) if line.stroke is not None}
+        last_line = {
+            line.stroke: number
+            for number, line in enumerate(program.lines)
+            if line.stroke is not None and not is_pen_change(line.text)
+        }
         self._last_lines = [last_line[stroke] for stroke in sorted(last_line)]
         self._stroke_ends_s = [self._time_s(line) for line in self._last_lines]
         self._lines = len(program.lines)
@@ -50,17 +55,19 @@ class Progress:
             self._line = event.line
             if not self._paused:
                 # What a machine that stands takes into its buffer is no progress.
-                self._show(state="drawing", words="", **self._figures())
+                self._show(state="drawing", words="", **self._figures(at_least=self._line - AHEAD))
         elif isinstance(event, Resumed):
             self._begun_s, self._paused = self._now() - self._done_s, False
         elif not self._paused:
             if self._line >= 0:
-                self._show(**self._figures())
+                whole = isinstance(event, Paused) and event.at_mm is None
+                self._show(**self._figures(at_least=self._line if whole else self._line - AHEAD))
             self._paused = isinstance(event, Paused) or (isinstance(event, Waiting) and bool(event.cause))
 
-    def _figures(self) -> dict[str, Any]:
+    def _figures(self, *, at_least: int) -> dict[str, Any]:
+        """at_least: the line up to which everything must have been drawn."""
         all_s, now = self._times_s[-1] if self._times_s else 0.0, self._now()
-        at_least_s = self._time_s(self._line - AHEAD) if self._line >= AHEAD else 0.0
+        at_least_s = self._time_s(at_least) if at_least >= 0 else 0.0
         self._done_s = min(max(now - self._begun_s, at_least_s), self._time_s(self._line))
         self._begun_s = now - self._done_s
         drawn = (self._stroke_ends_s, self._done_s) if all_s else (self._last_lines, self._line)

@@ -15,7 +15,7 @@ _SOON_S, _LATE_S = 0.75, 3.0
 
 
 class Ahead:
-    """Called by the link when strokes are about to be touched; promises these and some more.
+    """Called by the link when strokes are about to be touched; promises these and some more of the same pen.
 
     write: makes `certain, possible` durable, or raises LinedrawError. line_times_s: when each line of the program will
     have been drawn, in s from its start; empty where nobody knows. now: a clock that only goes forward.
@@ -29,7 +29,8 @@ class Ahead:
         *,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._write, self._now, self._strokes = write, now, program.strokes
+        self._write, self._now = write, now
+        self._ends = sorted({*program.passes, program.strokes})
         self._starts_s = _starts_s(program, line_times_s)
         self._more, self._at_s = 0, float("-inf")
 
@@ -40,7 +41,9 @@ class Ahead:
             self._more = 4 * self._more + 3
         elif now - self._at_s > _LATE_S:
             self._more //= 2
-        possible = min(self._strokes, max(touched + self._more, self._soon(touched)))
+        # Where the pen is changed it stands for hours maybe, and nobody shall doubt what comes behind that.
+        end = next((each for each in self._ends if each >= touched), touched)
+        possible = min(end, max(touched + self._more, self._soon(touched)))
         self._write(certain, possible)
         self._at_s = now
         return possible

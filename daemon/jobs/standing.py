@@ -23,9 +23,12 @@ _CAUSES: dict[Literal["hold", "door", "sleep", ""], Reason] = {
 }
 
 
-def stand(event: Stand, job_id: str, station: Station) -> None:
-    """Record and tell it. job_id: of the job that is drawn; "" where the machine moves without one."""
-    state, reason, words = _what(event, station)
+def stand(event: Stand, job_id: str, station: Station, *, pen: str = "") -> None:
+    """Record and tell it. job_id: of the job that is drawn; "" where the machine moves without one.
+
+    pen: that a change puts in; "" where it has no name.
+    """
+    state, reason, words = _what(event, station, pen)
     # Whoever shows what the job says meanwhile waits for its step.
     with station.desk.changed:
         station.show(state=state.value, reason=reason.value, words="" if state is State.DRAWING else words)
@@ -55,10 +58,10 @@ def _step(desk: Desk, job_id: str, state: State, reason: Reason, words: str) -> 
         desk.trouble(str(error), job=job_id)
 
 
-def _what(event: Stand, station: Station) -> tuple[State, Reason, str]:
+def _what(event: Stand, station: Station, pen: str) -> tuple[State, Reason, str]:
     match event:
         case Paused(change=True, also=also):
-            words = f"put the {station.pen_in} pen in, {f'{also}, ' if also else ''}then {station.command('resume')}"
+            words = f"put the {pen or 'next'} pen in, {f'{also}, ' if also else ''}then {station.command('resume')}"
             return State.PAUSED, Reason.PEN_CHANGE, words
         case Paused(stroke=stroke):
             where = "" if stroke is None else f" before stroke {stroke}"

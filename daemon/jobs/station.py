@@ -37,8 +37,8 @@ class Station:
         """It has asked for a job, and there was none for it."""
         self.missing = False
         """There is no machine, or none that can begin."""
-        self.pen_in = ""
-        """What the pen is called that must be in; "" where it has no name."""
+        self.pen_in: str | None = None
+        """What the pen is called that is in; "" where it may be another one, None before anybody has said so."""
         desk.stations[name] = self
 
     @property

@@ -20,6 +20,7 @@ from firmware_protocol.session import (
     JobLine,
     NotReady,
     PausableSession,
+    Paused,
     Ready,
     ResumableSession,
     Session,
@@ -245,7 +246,7 @@ class Link:
                 self._turned()
             now = self._transport.now()
             events = [*self._session.receive(data, now), *self._session.expire(now)]
-            self._promise_strokes(now)
+            self._promise_strokes(now, stands=any(isinstance(event, Paused) for event in events))
             said = self._session.data_to_send(now)
             if self._recorder:
                 self._recorder.turned(now, data, said, events)
@@ -259,14 +260,17 @@ class Link:
                 return
             data = self._transport.read(self._wait_until(until))
 
-    def _promise_strokes(self, now: float) -> None:
-        """What may come onto the sheet is written down before it can."""
+    def _promise_strokes(self, now: float, *, stands: bool) -> None:
+        """What may come onto the sheet is written down before it can; where the pen stands, what certainly has, too."""
         touched = self._session.strokes_touched
-        if touched <= self._promised or self._unpromised:
+        more = touched > self._promised
+        if self._unpromised or not (more or stands):
             return
         try:
-            self._promised = self._promise(touched, self._session.strokes_certain)
+            self._promised = max(self._promised, self._promise(touched, self._session.strokes_certain))
         except LinedrawError as error:
+            if not more:
+                return
             self._unpromised = str(error)
             self._record(now, "stop")
             self._session.stop(now)

@@ -41,8 +41,14 @@ def at_pen_change(daemon: Daemon, pen: str) -> Job:
     return job
 
 
-def drop(daemon: Daemon) -> None:
-    shutil.copyfile(SVG, daemon.settings.paths.inbox / "three.svg")
+def drop(daemon: Daemon, name: str = "three.svg") -> None:
+    shutil.copyfile(SVG, daemon.settings.paths.inbox / name)
+
+
+def go_on(daemon: Daemon, job: Job) -> str:
+    """From the first stroke of the red pen."""
+    order = Order.model_validate({"order": "resume", "job": job.id, "from_stroke": 5})
+    return give_order(daemon.settings.paths.control, order)
 
 
 def by_pen(folder: Path) -> dict[str, list[Points]]:
@@ -98,14 +104,62 @@ def test_a_daemon_that_was_stopped_at_a_pen_change_names_the_pen_to_go_on_with(t
         (job,) = daemon.wait_for(ended)
         assert (job.state, job.reason) == (State.INTERRUPTED, Reason.POSITION_KNOWN)
         assert job.certain == job.possible == 5
-        order = Order.model_validate({"order": "resume", "job": job.id, "from_stroke": 5})
-        assert "put the red pen in first" in give_order(daemon.settings.paths.control, order)
+        assert "with the red pen" in go_on(daemon, job)
+        # Nobody has said that it was put in.
+        job = at_pen_change(daemon, "red")
+        assert job.certain == job.possible == 5
+        daemon.order("resume")
         at_pen_change(daemon, "blue")
         daemon.order("resume")
         (job,) = daemon.wait_for(ended)
         ink = by_pen(daemon.folder(job))
     assert job.state is State.DONE
     assert list(ink) == ["black", "red", "blue"]
+
+
+def test_what_was_stopped_again_before_its_pen_was_in_keeps_what_is_on_the_sheet(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path, "grbl"), planner=None) as daemon:
+        drop(daemon)
+        at_pen_change(daemon, "red")
+        daemon.order("stop")
+        (job,) = daemon.wait_for(ended)
+        go_on(daemon, job)
+        at_pen_change(daemon, "red")
+        daemon.order("stop")
+        (job,) = daemon.wait_for(ended)
+    assert (job.state, job.certain, job.possible) == (State.INTERRUPTED, 5, 5)
+
+
+@pytest.mark.parametrize("device", ["grbl", "dobot", "emco"])
+def test_the_next_drawing_waits_for_its_first_pen_where_the_last_one_is_in(device: str, tmp_path: Path) -> None:
+    with running(settings_of(tmp_path, device), planner=None) as daemon:
+        station = next(iter(daemon.parts.desk.stations.values()))
+        drop(daemon)
+        for pen in ("red", "blue"):
+            at_pen_change(daemon, pen)
+            assert station.pen_in == ""
+            daemon.order("resume")
+        daemon.wait_for(ended)
+        assert station.pen_in == "blue"
+        drop(daemon, "again.svg")
+        daemon.order("next")
+        daemon.wait_for(lambda jobs: len(jobs) == 2 and jobs[1].words.startswith("put the black pen in"))
+        assert daemon.parts.board.now.strokes_done == 0
+        daemon.order("resume")
+        daemon.wait_for(lambda jobs: jobs[1].words.startswith("put the red pen in"))
+        daemon.order("stop")
+        daemon.wait_for(lambda jobs: ended(jobs[1:]))
+
+
+def test_at_a_pen_change_everything_before_is_certain_and_nothing_behind_is_promised(tmp_path: Path) -> None:
+    with running(settings_of(tmp_path, "grbl"), planner=None) as daemon:
+        drop(daemon)
+        job = at_pen_change(daemon, "red")
+        assert (job.certain, job.possible) == (5, 5)
+        shown = daemon.parts.board.now
+        assert (shown.state, shown.strokes_done) == ("paused", 5)
+        daemon.order("stop")
+        daemon.wait_for(ended)
 
 
 def test_only_what_is_blue_is_drawn_without_a_pen_change(tmp_path: Path) -> None:

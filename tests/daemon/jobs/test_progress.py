@@ -54,7 +54,7 @@ def test_seconds_left_are_within_five_percent_of_the_truth_from_ten_percent_on(s
     assert worst <= 0.05
 
 
-@pytest.mark.parametrize("stands", [Paused(0), Waiting("the door is open", "door")])
+@pytest.mark.parametrize("stands", [Paused(0, (4.0, 5.0)), Waiting("the door is open", "door")])
 def test_a_pause_takes_nothing_from_the_time_that_is_left(stands: Event) -> None:
     lines = tuple(ProgramLine(f"G1 X{number}", 0) for number in range(100))
     shown: dict[str, Any] = {}
@@ -79,3 +79,15 @@ def test_a_pause_takes_nothing_from_the_time_that_is_left(stands: Event) -> None
     now[0] += 1.0
     progress.hear(STATUS)
     assert shown["seconds_left"] == pytest.approx(100 - 31)
+
+
+def test_where_the_pen_is_changed_all_strokes_before_are_done_although_the_clock_was_slower() -> None:
+    texts = ["G1 X1", "G1 X2", "G0 X0 Y9", "M0"]
+    lines = (*(ProgramLine(text, 0) for text in texts), ProgramLine("G1 X3", 1))
+    shown: dict[str, Any] = {}
+    progress = Progress(lambda **values: shown.update(values), Program(lines, 2), [1.0, 2.0, 3.0, 3.5, 4.0], now=float)
+    for line in range(3):
+        progress.hear(Accepted(line))
+    assert shown["strokes_done"] == 0
+    progress.hear(Paused(1, change=True))
+    assert (shown["strokes_done"], shown["seconds_left"]) == (1, 1.0)
