@@ -24,6 +24,8 @@ _PARTS, _TAPERED, _BLUNT = 5, 0.72, 0.9
 """Of so many parts of its length the outer two are as narrow beside the widest: on the mean; each of them."""
 _FEWEST = 3
 """A hand that draws over its lines leaves some; one or two are lines that have come close by chance."""
+_BEYOND_WIDTHS, _LEAST_ALONE = (1.5, 3.0), 0.7
+"""Beyond the passes, so many line widths from the paper between them, so much is paper; in a hatch there are lines."""
 _AROUND_WIDTHS, _SEEN_WIDTHS = 4.0, 16.0
 _SPUR_WIDTHS = 1.5
 
@@ -33,13 +35,15 @@ def merge_overdrawn(page: PageImage) -> PageImage:
 
     Two passes of one line part and meet again. Between them lies a lens of paper, narrower than the line, closed all
     round and pointed at both ends. Lines that stay apart, as those of a hatch, a double wall or a staff, hold none.
-    A page with one or two lenses comes back as it is.
+    Where others run beside the two it is a hatch whose lines touch or cross. A page with one or two lenses comes back
+    as it is.
     """
     threshold, found = ink_threshold(page.grey), tones(page.grey)
     width_px = line_width_px(page.grey)
     if threshold is None or found is None or width_px is None:
         return page
     lenses = [each for each in _lenses(page.grey, threshold, width_px) if each.is_pointed(page.grey, found, width_px)]
+    lenses = [each for each in lenses if each.is_alone(page.grey, threshold, width_px)]
     if len(lenses) < _FEWEST:
         return page
     ink = page.grey <= threshold
@@ -85,6 +89,22 @@ class _Lens:
         ends = widths[[0, -1]] / widths.max()
         return bool(ends.mean() <= _TAPERED and ends.max() <= _BLUNT)
 
+    def is_alone(self, grey: Grey, threshold: float, width_px: float) -> bool:
+        """Whether hardly any other ink lies beside its passes."""
+        nearest_px, farthest_px = (widths * width_px for widths in _BEYOND_WIDTHS)
+        around = int(np.ceil(farthest_px)) + 1
+        here = np.asarray(self.of(grey, around), np.uint8)
+        away = cv2.distanceTransform(1 - self._placed(here.shape, around), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        beyond = here[(away > nearest_px + 0.5) & (away <= farthest_px)]
+        return beyond.size == 0 or float((beyond > threshold).mean()) >= _LEAST_ALONE
+
+    def _placed(self, shape: tuple[int, ...], around: int) -> NDArray[np.uint8]:
+        """Its paper as 1 in what `of` gives."""
+        place = np.zeros(shape, np.uint8)
+        top, left = min(around, self.top), min(around, self.left)
+        place[top : top + self.paper.shape[0], left : left + self.paper.shape[1]] = self.paper
+        return place
+
     def redraw(self, grey: Grey, ink: Mask, found: Tones, width_px: float) -> None:
         """The ink's middle as wide as a line is, in and beside the lens, in place."""
         around = round(_AROUND_WIDTHS * width_px)
@@ -93,11 +113,10 @@ class _Lens:
         away = cv2.distanceTransform((~middle).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         cover = np.clip(width_px / 2 + 0.5 - away, 0.0, 1.0)
         drawn = np.rint(found.paper - cover * (found.paper - found.full_ink)).astype(np.uint8)
-        place = np.zeros(here.shape, np.uint8)
-        top, left = min(around, self.top), min(around, self.left)
-        place[top : top + self.paper.shape[0], left : left + self.paper.shape[1]] = self.paper
         side = 2 * round(width_px + 1) + 1
-        near = cv2.dilate(place, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))) > 0
+        near = (
+            cv2.dilate(self._placed(here.shape, around), cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))) > 0
+        )
         here[near] = drawn[near]
 
 

@@ -55,9 +55,14 @@ WEDGES = tuple(np.array([[270.0, y], [30.0, y], [270.0, y + 7]]) for y in (40.0,
 WEDGES += (np.array([[270.0, 20.0], [270.0, 180.0]]),)
 
 
+CROSSING = tuple(level(y) for y in np.arange(25, 180, 10.0))
+CROSSING += tuple(np.array([[30.0, y - 15], [270.0, y + 15]]) for y in np.arange(25, 180, 10.0))
+
+
 @pytest.mark.parametrize(
     "lines",
     [
+        pytest.param(CROSSING, id="two hatches that cross at a small angle"),
         pytest.param(DOUBLE_WALLS, id="double walls"),
         pytest.param(HATCH, id="a hatch"),
         pytest.param(FRAMED, id="a hatch in a frame"),
