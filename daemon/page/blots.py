@@ -35,16 +35,16 @@ def rimmed(page: PageImage) -> PageImage:
     if page.line_width_px is None:
         return page
     ink = ink_mask(page.grey)
-    grey, lines, count = page.grey.copy(), list[Points](), 0
+    found = list(_blots(ink, page.line_width_px))
+    if not found:
+        return page
+    grey, lines, count = page.grey.copy(), list[Points](), len(found)
     paper = np.median(grey[~ink])
-    for box, blot, around in _blots(ink, page.line_width_px):
+    for box, blot, around in found:
         bare = _bare(ink[box], around, page.line_width_px)
         grey[box] = np.rint(grey[box] + (paper - grey[box]) * bare)
         corner = np.array([box[1].start, box[0].start], float)
         lines += [line + corner for line in Hatch(_SPACING * page.line_width_px).lines(blot, around, apart_px=np.inf)]
-        count += 1
-    if not count:
-        return page
     words = f"{count} small filled {'area is' if count == 1 else 'areas are'} inked to and fro"
     step = Step(words, reduced(page.grey, _SHOWN_PX))
     return replace(page, grey=grey, steps=(*page.steps, step), fills=tuple(lines))
@@ -53,7 +53,7 @@ def rimmed(page: PageImage) -> PageImage:
 def _blots(ink: Mask, width_px: float) -> Iterator[tuple[tuple[slice, slice], Mask, Mask]]:
     """Of each blot a box, the ink in it farther than a line width from paper, and the same up to the rim's middle."""
     inner, deep = np.zeros(ink.shape, bool), np.zeros(ink.shape, bool)
-    for band in bands(len(ink), halo_px=LEAST_WIDTHS * width_px + 2):
+    for band in bands(len(ink), halo_px=_THINNEST * width_px + 2):
         away = cv2.distanceTransform(ink[band.seen].view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)[band.own_of_seen]
         inner[band.own], deep[band.own] = away > width_px, away > _THINNEST / 2 * width_px
     if not deep.any():

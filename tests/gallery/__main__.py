@@ -17,14 +17,24 @@ import numpy as np
 
 from daemon.config import Options, Settings, load_settings
 from daemon.jobs.folder import warnings_of
+from daemon.jobs.planner import plan_picture
+from daemon.report import canvas
 from daemon.report.canvas import Picture
 from daemon.report.contact_sheet import Row, contact_sheet
 from daemon.report.preview import in_words
 from tests.demo import Seen, daemon, drop, row_of, wait_for
-from tests.gallery.inputs import Input, kinds
+from tests.drawings.colours import PENS
+from tests.gallery.inputs import DRAWINGS, Input, kinds
 
 _DOCS = Path(__file__).parents[2] / "docs"
 _QUALITY = 84
+_PENS, _SIDE_PX = "with-pens.jpg", 640
+_TAIL = f"""## With pens set
+
+![Three colours: given, and the drawing in its three pens with the travel between](gallery/{_PENS})
+
+`three_colours.png` with `[pens]` in the settings, as it is planned: [pens.md](pens.md).
+"""
 _HEAD = """# Gallery: given, understood, drawn
 
 {count} inputs of {kinds} kinds, drawn by the daemon on the simulated plotter without a single setting, those that go
@@ -44,6 +54,7 @@ def main(docs: Path) -> None:
     for title, inputs in kinds().items():
         sheet = contact_sheet([rows[each.file] for each in inputs], title=title)
         (docs / "gallery" / _file(title)).write_bytes(_jpeg(sheet))
+    (docs / "gallery" / _PENS).write_bytes(_jpeg(with_pens()))
     (docs / "gallery.md").write_text(page(rows, said), encoding="utf-8")
 
 
@@ -55,7 +66,21 @@ def page(rows: dict[str, Row], said: dict[str, Sequence[str]]) -> str:
         parts.append("| file | what it is | strokes | F1 | time |\n|---|---|---:|---:|---:|")
         parts += [_line(each, rows[each.file], said[each.file]) for each in inputs]
         parts.append("")
-    return "\n".join(parts)
+    return "\n".join([*parts, _TAIL])
+
+
+def with_pens() -> Picture:
+    """A drawing in three colours, and what its preview shows where pens of these colours are set."""
+    given = DRAWINGS / "three_colours.png"
+    with tempfile.TemporaryDirectory() as folder:
+        toml = Path(folder) / "pens.toml"
+        colours = ", ".join(f'{name} = "{colour}"' for name, colour in PENS.items())
+        toml.write_text(f"[pens]\ncolours = {{ {colours} }}\n", encoding="utf-8")
+        settings = load_settings(Options(config=toml, device="sim", state_dir=Path(folder)))
+        plan_picture(given, Path(folder), settings, *settings.machines)
+        pictures = [cv2.imread(str(path), cv2.IMREAD_COLOR) for path in (given, Path(folder) / "preview.png")]
+    tiles = [canvas.fit(np.asarray(picture, np.uint8), _SIDE_PX, _SIDE_PX) for picture in pictures]
+    return np.asarray(np.hstack(tiles), np.uint8)
 
 
 def _line(given: Input, row: Row, said: Sequence[str]) -> str:
