@@ -16,7 +16,8 @@ import pytest
 
 from daemon.config import GrblMachine, Options, ServoPenSettings, Settings, ZPenSettings, load_settings
 from daemon.control import Order, give_order
-from daemon.errors import SettingsError
+from daemon.errors import DiskFull, SettingsError
+from daemon.jobs.arrivals import Arrivals
 from daemon.jobs.grbl import touches
 from daemon.jobs.journal import Job
 from daemon.jobs.states import State
@@ -258,3 +259,37 @@ def test_a_file_says_that_a_new_pen_is_in(tmp_path: Path) -> None:
         while daemon.parts.pens["left"].ink_m:
             daemon.parts.desk.wait(0.05)
         assert "a new pen is in drawn_with_the_old_m=12" in daemon.log()
+
+
+def at_rest(settings: Settings, parts: Parts) -> Service:
+    """One that runs no loop; nobody can reach it."""
+    service = Service(settings, parts)
+    service._control._close()
+    return service
+
+
+def test_each_picture_gives_the_loop_of_the_inbox_its_time(tmp_path: Path) -> None:
+    settings = settings_of(tmp_path)
+    with parts_of(settings, planner=PLANNER) as parts:
+        service, heart = at_rest(settings, parts), parts.pulse.inbox("all")
+        settings.paths.inbox.mkdir(exist_ok=True)
+        (settings.paths.inbox / "a.png").write_text("good")
+        heart.within(-1.0)
+        service._claim("", settings.paths.inbox / "a.png", None)
+        assert heart.late_s == 0.0
+        assert [job.name for job in parts.desk.journal.jobs()] == ["a.png"]
+
+
+def test_what_a_full_disk_broke_off_goes_on_at_the_next_look(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings, looks = settings_of(tmp_path), list[str]()
+
+    def finish(arrivals: Arrivals) -> None:
+        looks.append("")
+        raise DiskFull("no room for page 2: free the disk")
+
+    monkeypatch.setattr(Arrivals, "finish", finish)
+    with parts_of(settings, planner=PLANNER) as parts:
+        service = at_rest(settings, parts)
+        service._look_at_the_inbox("")
+        assert looks == [""]
+        assert "no room for page 2" in (settings.paths.log_dir / "linedrawd.log").read_text()
