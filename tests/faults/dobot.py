@@ -1,4 +1,4 @@
-"""Every fault of a simulated Dobot Magician in three moments: `rows()`."""
+"""Every fault of a simulated Dobot Magician in three moments, and some while it waits for a pen: `rows()`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from firmware_protocol.dobot.simulator.faults import (
     StrayByte,
 )
 from firmware_protocol.ink import Polyline
-from firmware_protocol.session import Ended, Verdict
+from firmware_protocol.session import Ended, Paused, Verdict
 from tests.faults.row import Row, outcome_of
 from tests.firmware_protocol.dobot.bench import Bench, Line, strokes
 
@@ -63,6 +63,8 @@ FAULTS: dict[str, Made] = {
     "alarm: out of reach": lambda moment: (RaiseAlarm(at_s=moment.at_s, code=0x21),),
 }
 
+AT_A_PEN_CHANGE = ("port closed", "power cut", "hang", "alarm: lost step", "alarm: out of reach")
+"""What may happen to an arm that nothing is sent to."""
 _SIGNS = {
     "command corrupt twice": "no acknowledgement, and no gap in the indices",
     "port closed": "end of the file",
@@ -79,12 +81,14 @@ def rows() -> list[Row]:
     bench = Bench()
     moments = _moments(bench)
     whole = _rounded(bench.sim.ink)
-    return [_row(name, made, moment, whole) for name, made in FAULTS.items() for moment in moments]
+    table = [_row(name, moment, whole, _lines()) for name in FAULTS for moment in moments]
+    change = _pen_change()
+    return [*table, *(_row(name, change, whole, _in_two_pens()) for name in AT_A_PEN_CHANGE)]
 
 
-def _row(name: str, made: Made, moment: Moment, whole: list[Polyline]) -> Row:
-    bench = Bench(arm={"faults": made(moment)})
-    end = bench.draw(_lines())
+def _row(name: str, moment: Moment, whole: list[Polyline], lines: list[Line]) -> Row:
+    bench = Bench(arm={"faults": FAULTS[name](moment)})
+    end = bench.draw(lines)
     said_s = bench.time_of(Ended)
     bench.drain()
     drawn = _rounded(bench.sim.ink)
@@ -100,19 +104,35 @@ def _row(name: str, made: Made, moment: Moment, whole: list[Polyline]) -> Row:
 def _seen_s(bench: Bench, moment: Moment, end: Ended) -> float:
     """When the host could see it: at once, where something was said; with the first reply that is missing, else."""
     if end.verdict in {Verdict.REJECTED, Verdict.SILENT} and "stood still" not in end.why:
-        return _asked_in_vain_s(bench, end) + REPLY_S
+        return _asked_in_vain_s(bench, moment, end) + REPLY_S
     return moment.at_s
 
 
-def _asked_in_vain_s(bench: Bench, end: Ended) -> float:
-    """When what had to be sent twice was sent first: a command, or any question where nothing is answered."""
-    commands = end.verdict is Verdict.REJECTED
-    sent = [(at, data) for at, data in bench.sent if len(data) == CP_BYTES or not commands]
+def _asked_in_vain_s(bench: Bench, moment: Moment, end: Ended) -> float:
+    """When what had to be sent twice was sent first: a command, or any question where nothing is answered any more."""
+    if end.verdict is Verdict.REJECTED:
+        sent = [(at, data) for at, data in bench.sent if len(data) == CP_BYTES]
+    else:
+        sent = [(at, data) for at, data in bench.sent if at >= moment.at_s - REPLY_S]
     return next(at for (at, data), (later, again) in pairwise(sent) if data == again and later > at + POLL_S)
 
 
 def _lines() -> list[Line]:
     return strokes(STROKES, segments=LINES_A_STROKE - 3, step_mm=2.0)
+
+
+def _in_two_pens() -> list[Line]:
+    """The first half of the strokes with one pen."""
+    lines = _lines()
+    first = next(number for number, line in enumerate(lines) if line.stroke == STROKES // 2)
+    return [*lines[:first], Line("M0", STROKES // 2 - 1), *lines[first:]]
+
+
+def _pen_change() -> Moment:
+    """A minute after the arm has begun to wait for its second pen."""
+    bench = Bench().ready().start(_in_two_pens())
+    bench.until(lambda: bool(bench.all_of(Paused)))
+    return Moment("pen change", bench.now + 60.0, 0)
 
 
 def _moments(bench: Bench) -> list[Moment]:

@@ -1,4 +1,4 @@
-"""Every fault of a simulated GRBL controller in three moments: `rows()`."""
+"""Every fault of a simulated GRBL controller in three moments, and some while it waits for a pen: `rows()`."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ from firmware_protocol.grbl.simulator.faults import (
     Unplug,
     UnsaidAlarm,
 )
-from firmware_protocol.session import Ended, Event, Status, Verdict, Waiting
+from firmware_protocol.session import Ended, Event, Paused, Status, Verdict, Waiting
 from tests.faults.row import Row, outcome_of
+from tests.firmware_protocol.grbl.driver import Line
 from tests.firmware_protocol.grbl.pair import TOUCHES_MM, Pair, missing_mm, plotter, stroke_lines
 
 STROKES = 12
@@ -32,6 +33,11 @@ OFF_MM = 0.04
 SHORT_MM = 0.2
 DRAWING = [[(2.0 * n, y) for y in (0.0, 5.0, 5.0 + SHORT_MM, 5.0 + 2 * SHORT_MM, 10.0)] for n in range(STROKES)]
 LINES = stroke_lines(DRAWING)
+_CHANGE = next(number for number, line in enumerate(LINES) if line.stroke == STROKES // 2)
+IN_TWO_PENS = [*LINES[:_CHANGE], Line("M0", STROKES // 2 - 1), *LINES[_CHANGE:]]
+"""The first half of the strokes with one pen."""
+AT_A_PEN_CHANGE = ("hang", "brown-out", "limit switch", "limit switch, alarm unsaid", "unplug")
+"""What may happen to a controller that nothing is sent to."""
 
 _UNSEEN = (
     "the controller answers `ok`; a report each 0.2 s and the place at the end are compared with the program, which "
@@ -116,13 +122,15 @@ class Watched(Pair):
 def rows() -> list[Row]:
     """The table of all faults and moments."""
     moments = list(_moments())
-    return [_row(name, moment, made(moment)) for name, made in FAULTS.items() for moment in moments]
+    table = [_row(name, moment, made(moment), LINES) for name, made in FAULTS.items() for moment in moments]
+    change = _pen_change()
+    return [*table, *(_row(name, change, FAULTS[name](change), IN_TWO_PENS) for name in AT_A_PEN_CHANGE)]
 
 
-def _row(name: str, moment: Moment, faults: tuple[Fault, ...]) -> Row:
+def _row(name: str, moment: Moment, faults: tuple[Fault, ...], lines: list[Line]) -> Row:
     pair = Watched(*faults).ready()
     begun_s = pair.now
-    pair.session.start(LINES, begun_s)
+    pair.session.start(lines, begun_s)
     said_s, verdict, end = _ended(pair)
     sign, seen_s = _sign(pair, end, begun_s)
     whole = _whole(pair)
@@ -252,6 +260,14 @@ def _moments() -> Iterator[Moment]:
         ("last line", _line(f"X{2 * (STROKES - 1):.3f} Y10.000"), (2.0 * (STROKES - 1), 7.5, 0.0)),
     ):
         yield _moment(name, line, place)
+
+
+def _pen_change() -> Moment:
+    """A minute after the machine has begun to wait for its second pen."""
+    pair = Pair(plotter()).ready()
+    pair.session.start(IN_TWO_PENS, pair.now)
+    pair.until(Paused)
+    return Moment("pen change", pair.now + 60.0, 0, 0, 0, 0)
 
 
 def _line(text: str) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.faults.dobot import FAULTS, rows
+from tests.faults.dobot import AT_A_PEN_CHANGE, FAULTS, STROKES, rows
 from tests.faults.row import Row
 
 
@@ -14,12 +14,17 @@ def table() -> list[Row]:
 
 
 def test_every_fault_has_a_row_for_each_moment(table: list[Row]) -> None:
-    assert len(table) == len(FAULTS) * 3
-    assert {row.moment for row in table} == {"travel", "mid stroke", "last line"}
+    assert len(table) == len(FAULTS) * 3 + len(AT_A_PEN_CHANGE)
+    assert {row.moment for row in table} == {"travel", "mid stroke", "last line", "pen change"}
 
 
 def test_every_row_is_in_time_and_true(table: list[Row]) -> None:
     assert [row for row in table if row.outcome != "ok"] == []
+
+
+def test_of_an_arm_that_waits_for_a_pen_everybody_knows_what_is_drawn(table: list[Row]) -> None:
+    waits = [row for row in table if row.moment == "pen change"]
+    assert {(row.certainly, row.true, row.possibly) for row in waits} == {(STROKES // 2,) * 3}
 
 
 def test_what_the_wire_does_to_one_packet_is_got_over(table: list[Row]) -> None:
