@@ -18,8 +18,8 @@ class Row:
     machine: "grbl", "emco" or "dobot". moment: "travel", "mid stroke", "last line" or "pen change". sign: what the
     host can first see of the fault, empty when it sees nothing. verdict: the session's, as text. seconds: from the
     sign to the verdict, None where there is no sign. certainly, possibly: strokes as the session states them; true:
-    strokes whose ink is whole on the simulated sheet. outcome: see `outcome_of`. limits: for an undetectable fault, what limits the
-    harm; for a wrong row, what is wrong.
+    strokes whose ink is whole on the simulated sheet. outcome: see `outcome_of`. limits: for an undetectable fault,
+    what limits the harm; for a wrong row, what is wrong.
     """
 
     machine: str
