@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -138,13 +139,13 @@ def test_the_one_file_counts_once_for_what_is_kept(tmp_path: Path) -> None:
 
 
 def test_what_is_left_of_the_pages_has_the_whole_file(tmp_path: Path) -> None:
-    intake, clock = Intake(tmp_path, pages=PAGES), [0.0]
+    intake, clock, began_s = Intake(tmp_path, pages=PAGES), [0.0], time.time()
     (intake.inbox / "plan.pdf").write_bytes(bytes(3_000_000))
     take(intake)
     for job in intake.journal.jobs():
         for state in (State.PLANNING, State.PLANNED, State.DRAWING, State.DONE):
             intake.desk.step(job.id, state)
-    retention = Retention(intake.desk, Keep(jobs_mb=2.5), now=lambda: clock[0], wall=lambda: 2e9 + clock[0])
+    retention = Retention(intake.desk, Keep(jobs_mb=2.5), now=lambda: clock[0], wall=lambda: began_s + clock[0])
     for left in (2, 1):
         retention.turn()
         assert len(list(intake.folders.root.iterdir())) == left
