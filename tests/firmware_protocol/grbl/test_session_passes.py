@@ -49,7 +49,9 @@ def whole(pair: Pair, first: int) -> int:
 
 
 def touched(pair: Pair, first: int) -> int:
-    return max((round(x_mm / APART_MM) + 1 for line in pair.sim.ink for x_mm, _ in line), default=first)
+    """By lines of ink: the pen, which stands at 0 before all, may leave a dot there."""
+    places = (place for line in pair.sim.ink if len(line) > 1 for place in line)
+    return max((round(x_mm / APART_MM) + 1 for x_mm, _ in places), default=first)
 
 
 @settings(max_examples=40, deadline=None)
