@@ -11,7 +11,7 @@ from tests.benchmarks.memory import children, idle_share
 from tests.benchmarks.wire import served
 from tests.torture.rig import await_
 
-DRAWINGS = 10
+DRAWINGS = 5
 _IDLE_S = 60.0
 _WITHIN_S = 600.0
 
