@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -24,19 +25,22 @@ _FREE = 0.6
 """So much of its outline lies beside paper: where many lines meet their ink is wide, too."""
 _SPACING = 0.85
 """Of the lines to and fro, in line widths: the pen leaves no paper between them."""
+_MOST = 1000
+"""A page of more is a screen of dots, not a drawing, and left as it is."""
 _SHOWN_PX = 480
 
 
 def rimmed(page: PageImage) -> PageImage:
     """The page with the rims of its blots alone, one line width wide, and in `fills` the lines that ink their insides.
 
-    page: its line width known, larger areas taken off. A page without blots comes back as it is.
+    page: its line width known, larger areas taken off. A page without blots, or with more
+    than a thousand, comes back as it is.
     """
     if page.line_width_px is None:
         return page
     ink = ink_mask(page.grey)
-    found = list(_blots(ink, page.line_width_px))
-    if not found:
+    found = list(itertools.islice(_blots(ink, page.line_width_px), _MOST + 1))
+    if not found or len(found) > _MOST:
         return page
     grey, lines, count = page.grey.copy(), list[Points](), len(found)
     paper = np.median(grey[~ink])

@@ -123,3 +123,14 @@ def test_lines_that_end_on_a_blot_and_blots_beside_each_other_stay_as_they_are()
 def test_a_page_whose_lines_nobody_has_measured_comes_back_as_it_is() -> None:
     given = replace(disc(8.0), line_width_px=None)
     assert rimmed(given) is given
+
+
+def test_a_screen_of_dots_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    given = seen(paper())
+    grey = given.grey.copy()
+    for place in ((20, 30), (60, 30), (100, 30)):
+        cv2.circle(grey, place, 10, 0, -1)
+    given = replace(given, grey=grey)
+    assert len(rimmed(given).steps) == 1
+    monkeypatch.setattr("daemon.page.blots._MOST", 2)
+    assert rimmed(given) is given
