@@ -283,15 +283,8 @@ def _fidelity_mm(readable: PageImage, drawn_mm: list[Points], from_px: Affine, w
 
 
 def _strokes_json(drawing: Drawing) -> bytes:
-    lines: list[list[list[float]]] = [_rounded(stroke) for stroke in drawing.strokes]
-    return json.dumps(
-        {
-            "width_px": drawing.width_px,
-            "height_px": drawing.height_px,
-            "px_per_mm": drawing.px_per_mm,
-            "strokes": lines,
-        }
-    ).encode()
+    size = {"width_px": drawing.width_px, "height_px": drawing.height_px, "px_per_mm": drawing.px_per_mm}
+    return json.dumps({**size, "strokes": [_rounded(stroke) for stroke in drawing.strokes]}).encode()
 
 
 def _rounded(stroke: Stroke) -> list[list[float]]:
