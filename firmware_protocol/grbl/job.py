@@ -89,9 +89,8 @@ class Job:
             return None
         self._certain, self._possible = self._on_paper()
         if not self.leg.held:
-            self._certain = self._possible = max(
-                self._certain, strokes_touched([part.stroke for part in self.leg.parts], len(self.leg.parts))
-            )
+            drawn = strokes_touched([part.stroke for part in self.leg.parts], len(self.leg.parts))
+            self._certain, self._possible = max(self._certain, drawn), max(self._possible, drawn)
         stroke = next((part.stroke for part in self._next.parts if part.stroke is not None), None)
         return Paused(stroke, self.leg.held_at[:2] if self.leg.held_at else None, self.leg.changes)
 

@@ -57,6 +57,7 @@ def touched(pair: Pair, first: int) -> int:
 @settings(max_examples=40, deadline=None)
 @given(COURSES, st.integers(0, 5), st.booleans(), st.booleans())
 @example(["pause", 5.0, "stop"], 3, False, True)
+@example([1.3, "halt", 1.3, "resume", "pause", 1.0, "stop"], 3, False, False)
 def test_each_pen_is_waited_for_once_parked_and_the_truth_lies_within(
     course: list[float | str], first: int, change_first: bool, counting: bool
 ) -> None:
