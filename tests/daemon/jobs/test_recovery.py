@@ -130,7 +130,7 @@ class Clocked:
     """Promises, with the time at which each was written."""
 
     def __init__(self, strokes: int, *, stroke_s: float, known: bool = True) -> None:
-        self.now_s, self.written = 0.0, [(0.0, 0)]
+        self.now_s, self.written, self.strokes = 0.0, [(0.0, 0)], strokes
         self.stroke_s, lines = stroke_s, tuple(ProgramLine("G1", stroke) for stroke in range(strokes))
         times = [stroke_s * (stroke + 1) for stroke in range(strokes)] if known else []
         self.ahead = Ahead(self._write, Program(lines, strokes), times, now=lambda: self.now_s)
@@ -140,7 +140,7 @@ class Clocked:
 
     def draw(self) -> None:
         promised = 0
-        for stroke in range(1, self.ahead._strokes + 1):
+        for stroke in range(1, self.strokes + 1):
             if stroke > promised:
                 promised = self.ahead(stroke, 0)
                 assert promised >= stroke
