@@ -214,12 +214,12 @@ def test_the_status_names_the_recording(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_thread_that_dies_ends_the_daemon_in_order(tmp_path: Path) -> None:
+def test_a_thread_that_dies_ends_the_daemon_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     settings = settings_of(tmp_path)
+    # A mistake of ours, which no room expects.
+    monkeypatch.setattr("daemon.jobs.arrivals.Arrivals.take", lambda *_, **__: 1 / 0)
     with parts_of(settings, planner=PLANNER) as parts:
         service = Service(settings, parts)
-        # A row that the code cannot have written is a mistake that no room expects.
-        parts.desk.journal.add("000001-a", "a.png")
         (settings.paths.inbox / "a.png").write_text("good")
         assert service.run() is False
     assert json.loads(settings.paths.status.read_text())["state"] == "ended"
