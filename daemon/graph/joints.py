@@ -9,6 +9,7 @@ import numpy as np
 
 from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
+from daemon.polyline import lengths_along, places_at
 from daemon.shapes import Points
 
 _SPAN_PX = 7.0
@@ -94,11 +95,8 @@ def _cut(walk: list[int], polylines: list[Points], ends: Indices) -> list[_Piece
 
 def _turns(line: Points, rows: Indices) -> Floats:
     """The turn in degrees at each inner row, between the points 7 px before and after it."""
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    along = lengths_along(line)
     at = along[rows[1:-1]]
-    before, here, after = (
-        np.stack([np.interp(at + step, along, line[:, axis]) for axis in (0, 1)], axis=1)
-        for step in (-_SPAN_PX, 0.0, _SPAN_PX)
-    )
+    before, here, after = (places_at(at + step, line, along) for step in (-_SPAN_PX, 0.0, _SPAN_PX))
     (ux, uy), (vx, vy) = (here - before).T, (after - here).T
     return np.asarray(np.degrees(np.abs(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy))))

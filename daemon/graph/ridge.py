@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from daemon.graph.crossings import Lines
 from daemon.graph.plausibility import Floats
 from daemon.graph.skeleton import Indices
+from daemon.polyline import lengths_along, places_at
 from daemon.shapes import Map, Points
 
 _STEP_PX = 0.25
@@ -64,10 +65,9 @@ def _bundle(polylines: list[Points]) -> _Bundle:
 
 
 def _resampled(polyline: Points) -> Points:
-    steps = np.hypot(*np.diff(polyline, axis=0).T)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
+    along = lengths_along(polyline)
     at = np.linspace(0.0, along[-1], max(2, round(along[-1])) + 1)
-    return np.stack([np.interp(at, along, polyline[:, axis]) for axis in (0, 1)], axis=1)
+    return places_at(at, polyline, along)
 
 
 def _smoothed(bundle: _Bundle) -> _Bundle:

@@ -6,7 +6,6 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daemon.errors import DiskTrouble, LinedrawError
@@ -124,10 +123,6 @@ class Desk:
             self.journal.adopt(told)
             figures = {"state": told.state.value, "reason": told.reason.value}
             self.say("taken over from its folder", job=job_id, level=logging.WARNING, **figures)
-
-    def copy(self, picture: Path, name: str) -> str:
-        """Make a job of a copy of the picture. Returns the job's id. Raises DiskTrouble and FileNotFoundError."""
-        return self.add(self.folders.copy(picture), name)
 
     def add(self, job_id: str, name: str, *, bound_to: str = "") -> str:
         """Make a job of a folder that holds its picture. Returns its id. Raises DiskTrouble.

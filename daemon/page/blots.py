@@ -12,10 +12,10 @@ import numpy as np
 from daemon.bands import bands
 from daemon.components import components
 from daemon.ink import Mask, ink_mask
+from daemon.page.back import noted
 from daemon.page.fills import LEAST_WIDTHS, grown
 from daemon.page.hatch import Hatch
-from daemon.page.tones import reduced
-from daemon.shapes import Map, PageImage, Points, Step
+from daemon.shapes import Map, PageImage, Points
 
 _THINNEST = 3.5
 """Ink is no line where it is more than so many line widths across, and round."""
@@ -27,7 +27,6 @@ _SPACING = 0.85
 """Of the lines to and fro, in line widths: the pen leaves no paper between them."""
 _MOST = 1000
 """A page of more is a screen of dots, not a drawing, and left as it is."""
-_SHOWN_PX = 480
 
 
 def rimmed(page: PageImage) -> PageImage:
@@ -50,8 +49,7 @@ def rimmed(page: PageImage) -> PageImage:
         corner = np.array([box[1].start, box[0].start], float)
         lines += [line + corner for line in Hatch(_SPACING * page.line_width_px).lines(blot, around, apart_px=np.inf)]
     words = f"{count} small filled {'area is' if count == 1 else 'areas are'} inked to and fro"
-    step = Step(words, reduced(page.grey, _SHOWN_PX))
-    return replace(page, grey=grey, steps=(*page.steps, step), fills=tuple(lines))
+    return replace(noted(page, words, grey), fills=tuple(lines))
 
 
 def _blots(ink: Mask, width_px: float) -> Iterator[tuple[tuple[slice, slice], Mask, Mask]]:

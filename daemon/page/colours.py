@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from daemon.colours import BLACK, Pens, Rgb
 from daemon.homography import through
 from daemon.page.back import given_px
+from daemon.polyline import lengths_along, places_at
 from daemon.shapes import Colours, Drawing, PageImage, Points, Stroke
 
 _STEP_PX, _DISC_SHARE = 1.5, 0.3
@@ -104,10 +105,9 @@ def _lab(colours: NDArray[np.floating]) -> NDArray[np.float32]:
 
 def _parts(stroke: Stroke, look: _Look, meet: set[bytes]) -> Iterator[Stroke]:
     """The stroke, in parts of one pen each; where it changes both parts hold the point."""
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(stroke.points, axis=0).T))])
+    along = lengths_along(stroke.points)
     looks = np.linspace(0.0, along[-1], max(1, round(along[-1] / _STEP_PX)) + 1)
-    places = np.stack([np.interp(looks, along, side) for side in stroke.points.T], axis=1)
-    costs = look.costs(places)
+    costs = look.costs(places_at(looks, stroke.points, along))
     pens = _cheapest(costs, _CHANGE_WIDTHS * look.width_px * len(looks) / max(float(along[-1]), 1.0))
     changes = np.flatnonzero(np.diff(pens))
     cuts = [_snapped((looks[at] + looks[at + 1]) / 2, stroke, along, look.width_px, meet) for at in changes]
@@ -143,10 +143,5 @@ def _snapped(at: float, stroke: Stroke, along: NDArray[np.float64], width_px: fl
 def _between(points: Points, along: NDArray[np.float64], start: float, end: float) -> Points:
     """The part of a polyline between two lengths along it; its own points stay as they are."""
     inside = points[(along > start) & (along < end)]
-    first, last = (
-        points[int(np.searchsorted(along, at))]
-        if at in along
-        else np.array([np.interp(at, along, side) for side in points.T])
-        for at in (start, end)
-    )
+    first, last = places_at(np.array([start, end]), points, along)
     return np.concatenate([first[None], inside, last[None]])

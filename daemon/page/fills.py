@@ -10,9 +10,9 @@ import numpy as np
 
 from daemon.bands import bands
 from daemon.ink import Mask, ink_mask
+from daemon.page.back import noted
 from daemon.page.hatch import Hatch
-from daemon.page.tones import reduced
-from daemon.shapes import Grey, PageImage, Step
+from daemon.shapes import Grey, PageImage
 
 Fill: TypeAlias = Literal["outline", "skip"] | Hatch
 
@@ -22,7 +22,6 @@ LONGEST = 10.0
 """A stroke of a wider pen is longer than so many of its own widths."""
 _RIM_PX = 2.0
 _WORDS = {"outline": "drawn as outlines", "skip": "left out"}
-_SHOWN_PX = 480
 
 
 def hollow(page: PageImage, *, fill: Fill = "outline") -> PageImage:
@@ -40,9 +39,8 @@ def hollow(page: PageImage, *, fill: Fill = "outline") -> PageImage:
     bare = inside if fill != "skip" else grown(inside, page.line_width_px + _RIM_PX)
     done = "hatched" if isinstance(fill, Hatch) else _WORDS[fill]
     words = f"{count} filled {'area is' if count == 1 else 'areas are'} {done}"
-    step = Step(words, reduced(page.grey, _SHOWN_PX))
     lines = fill.lines(inside, grown(inside, page.line_width_px / 2)) if isinstance(fill, Hatch) else ()
-    return replace(page, grey=_blank(page.grey, bare), steps=(*page.steps, step), hatching=lines)
+    return replace(noted(page, words, _blank(page.grey, bare)), hatching=lines)
 
 
 def _insides(ink: Mask, width_px: float) -> tuple[Mask, int]:

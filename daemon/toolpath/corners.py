@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.polyline import lengths_along, places_at
 from daemon.shapes import Points
 
 _REACH_ERRORS = 8.0
@@ -20,8 +21,7 @@ def corners(trace: Points, *, error_mm: float) -> NDArray[np.intp]:
 
     trace: (N, 2) in mm, N >= 2, no point twice in a row. Of corners nearer to each other than that the sharpest.
     """
-    lengths = np.hypot(*np.diff(trace, axis=0).T)
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    along = lengths_along(trace)
     reach_mm = _REACH_ERRORS * error_mm
     turns, near = _turns(trace, along, reach_mm), _turns(trace, along, reach_mm / 2)
     sharp = np.flatnonzero((turns >= _LEAST_TURN_RAD) & (near >= _AT_ONCE * turns))
@@ -34,9 +34,7 @@ def corners(trace: Points, *, error_mm: float) -> NDArray[np.intp]:
 
 def _turns(trace: Points, along: NDArray[np.float64], reach_mm: float) -> NDArray[np.float64]:
     """By how much the way to each point and the way from it differ in direction, in rad; 0 at the ends."""
-    back, on = (
-        np.stack([np.interp(along + side * reach_mm, along, axis) for axis in trace.T], axis=1) for side in (-1, 1)
-    )
+    back, on = (places_at(along + side * reach_mm, trace, along) for side in (-1, 1))
     before, after = trace - back, on - trace
     turns = np.abs(np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1)))
     turns[[0, -1]] = 0.0

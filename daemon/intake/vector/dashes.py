@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from daemon.polyline import lengths_along, places_at
 from daemon.shapes import Points
 
 _MOST = 20_000
@@ -20,7 +21,7 @@ def dashed(line: Points, pattern_mm: Sequence[float]) -> list[Points]:
     """
     if len(line) < 2 or len(pattern_mm) < 2 or max(pattern_mm[1::2]) < _SHORTEST_MM:
         return [line]
-    at = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))]
+    at = lengths_along(line)
     if at[-1] / sum(pattern_mm) * len(pattern_mm) > _MOST:
         return [line]
     found: list[Points] = []
@@ -36,4 +37,4 @@ def dashed(line: Points, pattern_mm: Sequence[float]) -> list[Points]:
 
 def _part(line: Points, at: Points, start: float, end: float) -> Points:
     stops = np.r_[start, at[(at > start) & (at < end)], end] if end > start else np.array([start])
-    return np.stack([np.interp(stops, at, line[:, axis]) for axis in (0, 1)], axis=1)
+    return places_at(stops, line, at)

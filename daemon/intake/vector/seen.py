@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from daemon.polyline import lengths_along, places_at
 from daemon.shapes import Grey, Points
 
 _NEAR_PX = 2
@@ -30,6 +31,5 @@ def share_seen(grey: Grey, lines: Sequence[Points]) -> float:
 
 
 def _sampled(line: Points) -> Points:
-    at = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))]
-    stops = np.arange(0.0, at[-1] + _STEP_PX, _STEP_PX)
-    return np.stack([np.interp(stops, at, line[:, axis]) for axis in (0, 1)], axis=1)
+    along = lengths_along(line)
+    return places_at(np.arange(0.0, along[-1] + _STEP_PX, _STEP_PX), line, along)
