@@ -12,7 +12,7 @@ import pytest
 
 from daemon.cli import doctor
 from daemon.cli.__main__ import main
-from daemon.config import Options, Settings, load_settings
+from daemon.config import Settings
 from daemon.errors import SettingsError
 from daemon.intake.keyboard import KeyButton
 from daemon.jobs import pressing
@@ -20,18 +20,14 @@ from daemon.jobs.journal import Job
 from daemon.jobs.states import State
 from tests.daemon.intake.buttons import DOWN, ENTER, SPACE, key
 from tests.daemon.intake.scans import fake_on_path
-from tests.daemon.test_service import running
+from tests.daemon.test_service import LITTLE_MEMORY, loaded, running
 
 SIMULATED = "url = 'sim://grbl'\nsheet = 'ask'\n"
 BOTH = f"[machines.left]\n{SIMULATED}[machines.right]\n{SIMULATED}"
 
 
 def settings_of(root: Path, text: str, *, machine: str | None = None) -> Settings:
-    file = root / "linedrawd.toml"
-    file.write_text(f"[intake]\nsettle_s = 0.02\n[planning]\nmemory_mb = 256\n{text}")
-    return load_settings(
-        Options(config=file, state_dir=root / "state", machine=machine), environment={"HOME": str(root)}
-    )
+    return loaded(root, LITTLE_MEMORY + text, machine=machine)
 
 
 @pytest.fixture

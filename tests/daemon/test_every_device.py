@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from daemon.config import Options, Settings, load_settings
+from daemon.config import Settings
 from daemon.jobs.journal import Job
 from daemon.jobs.states import State
 from daemon.shapes import Points
 from daemon.toolpath.place import place
-from tests.daemon.test_service import Daemon, ended, running
+from tests.daemon.test_service import Daemon, ended, loaded, running
 
 HOUSE = Path(__file__).parents[1] / "drawings" / "house.png"
 PLANNED = "tests.daemon.planned"
@@ -32,9 +32,7 @@ reach_mm = [300, 300]
 
 
 def settings_of(root: Path, text: str, **options: str) -> Settings:
-    file = root / "linedrawd.toml"
-    file.write_text(f"[intake]\nsettle_s = 0.02\n[machines.left]\n{text}\n")
-    return load_settings(Options(config=file, state_dir=root / "state", **options), environment={"HOME": str(root)})  # type: ignore[arg-type]
+    return loaded(root, f"[machines.left]\n{text}\n", **options)
 
 
 def between(line: Points, step_mm: float = 0.2) -> Points:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daemon.config import Options, Settings, load_settings
+from daemon.config import Settings
 from daemon.control import Order, give_order
 from daemon.jobs.journal import Job
 from daemon.jobs.states import Reason, State
@@ -17,7 +17,7 @@ from daemon.shapes import Points
 from tests.daemon.intake.buttons import ENTER
 from tests.daemon.test_button import keypad, press
 from tests.daemon.test_every_device import farthest_mm
-from tests.daemon.test_service import Daemon, ended, running
+from tests.daemon.test_service import Daemon, ended, loaded, running
 from tests.drawings.colours import PENS
 
 __all__ = ["keypad"]
@@ -27,11 +27,8 @@ SVG = Path(__file__).parents[1] / "drawings" / "three_colours.svg"
 
 
 def settings_of(root: Path, device: str, *, more: str = "") -> Settings:
-    file = root / "linedrawd.toml"
     colours = ", ".join(f'{name} = "{colour}"' for name, colour in PENS.items())
-    file.write_text(f"[intake]\nsettle_s = 0.02\n[pens]\ncolours = {{ {colours} }}\n{more}\n")
-    options = Options(config=file, state_dir=root / "state", device=device, port=f"sim://{device}")
-    return load_settings(options, environment={"HOME": str(root)})
+    return loaded(root, f"[pens]\ncolours = {{ {colours} }}\n{more}\n", device=device, port=f"sim://{device}")
 
 
 def at_pen_change(daemon: Daemon, pen: str) -> Job:

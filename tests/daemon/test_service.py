@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, Thread
+from typing import Any
 
 import pytest
 
@@ -26,11 +27,18 @@ from daemon.service import Service
 from firmware_protocol.ink import PenRule
 from tests.daemon.jobs.test_pool import PLANNER
 
+LITTLE_MEMORY = "[planning]\nmemory_mb = 256\n"
+
+
+def loaded(root: Path, text: str, **options: Any) -> Settings:
+    """The settings of a daemon that lives in this folder and takes pictures at once. options: see `Options`."""
+    file = root / "linedrawd.toml"
+    file.write_text(f"[intake]\nsettle_s = 0.02\n{text}")
+    return load_settings(Options(config=file, state_dir=root / "state", **options), environment={"HOME": str(root)})
+
 
 def settings_of(root: Path, *, port: str = "sim://grbl", sheet: str = "auto") -> Settings:
-    file = root / "linedrawd.toml"
-    file.write_text(f"[intake]\nsettle_s = 0.02\n[planning]\nmemory_mb = 256\n[machines.left]\nsheet = '{sheet}'\n")
-    return load_settings(Options(config=file, port=port, state_dir=root / "state"), environment={"HOME": str(root)})
+    return loaded(root, f"{LITTLE_MEMORY}[machines.left]\nsheet = '{sheet}'\n", port=port)
 
 
 class Daemon:

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from daemon.cli.__main__ import main
-from daemon.config import Options, Settings, load_settings
+from daemon.config import Settings
 from daemon.control import Order, give_order
 from daemon.errors import LinedrawError
 from daemon.jobs.states import State
-from tests.daemon.test_service import Daemon, ended, running
+from tests.daemon.test_service import LITTLE_MEMORY, Daemon, ended, loaded, running
 
 SLOW = "url = 'sim://grbl?speed=25'"
 PLANNED = "tests.daemon.planned"
@@ -21,10 +21,8 @@ PLANNED = "tests.daemon.planned"
 
 def settings_of(root: Path, **machines: str) -> Settings:
     """One section for each machine, with these lines."""
-    file = root / "linedrawd.toml"
     sections = "".join(f"[machines.{name}]\n{lines}\n" for name, lines in machines.items())
-    file.write_text(f"[intake]\nsettle_s = 0.02\n[planning]\nmemory_mb = 256\n{sections}")
-    return load_settings(Options(config=file, state_dir=root / "state"), environment={"HOME": str(root)})
+    return loaded(root, LITTLE_MEMORY + sections)
 
 
 def order(daemon: Daemon, name: str, machine: str = "") -> str:

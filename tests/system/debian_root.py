@@ -19,8 +19,9 @@ CACHE = PROJECT / ".debian"
 PYTHONS = {"bookworm": "3.11", "trixie": "3.13"}
 UNIT = "linedrawd.service"
 _BOOT_WITHIN_S, _OFF_WITHIN_S = 60.0, 30.0
-_COMMAND_WITHIN_S = 600.0
+COMMAND_WITHIN_S = 600.0
 _PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
+ENVIRONMENT = {"PATH": _PATH, "LC_ALL": "C.UTF-8"}
 _NEEDED = {"mmdebstrap": "mmdebstrap", "systemd-nspawn": "systemd-container", "dpkg-deb": "dpkg"}
 
 
@@ -71,6 +72,12 @@ def archive(suite: str, arch: str, more: tuple[str, ...] = ()) -> Path:
         )  # fmt: skip
         part.rename(made)
     return made
+
+
+def arch_of(deb: Path) -> str:
+    """What a package is made for."""
+    said = subprocess.run(["dpkg-deb", "-f", deb, "Architecture"], capture_output=True, text=True, check=True)
+    return said.stdout.strip()
 
 
 @contextmanager
@@ -132,7 +139,7 @@ class Booted:
             outer.wait()
 
     def run(self, *command: str, check: bool = True) -> str:
-        return _said([*self._inside(), *command], check=check)
+        return said([*self._inside(), *command], check=check)
 
     def start(self) -> subprocess.Popen[bytes]:
         return subprocess.Popen([*self._inside(), "systemctl", "start", UNIT], stdin=subprocess.DEVNULL)
@@ -184,7 +191,7 @@ class Chrooted:
         self._began_s = self._ready_s = 0.0
 
     def run(self, *command: str, check: bool = True) -> str:
-        return _said(["chroot", str(self.root), *command], check=check, env={"PATH": _PATH, "LC_ALL": "C.UTF-8"})
+        return said(["chroot", str(self.root), *command], check=check, env=ENVIRONMENT)
 
     def start(self) -> subprocess.Popen[bytes]:
         places = {"STATE": "/var/lib/linedrawd", "LOGS": "/var/log/linedrawd", "RUNTIME": "/run/linedrawd"}
@@ -220,10 +227,13 @@ class Chrooted:
             self._process = None
 
 
-def _said(command: list[str], *, check: bool, env: Mapping[str, str] | None = None) -> str:
+def said(
+    command: list[str], *, check: bool = True, env: Mapping[str, str] | None = None, within_s: float = COMMAND_WITHIN_S
+) -> str:
+    """What the command prints. Raises AssertionError where it fails and that is to be checked."""
     done = subprocess.run(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
-        timeout=_COMMAND_WITHIN_S, env=env,
+        timeout=within_s, env=env,
     )  # fmt: skip
     assert not check or done.returncode == 0, f"{' '.join(command)} ended with {done.returncode}: {done.stdout}"
     return done.stdout

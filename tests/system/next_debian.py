@@ -7,21 +7,21 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from tests.system.debian_root import archive, machine, sources
+from tests.system.debian_root import ENVIRONMENT, arch_of, archive, machine, said
 from tests.system.package import BOOT_PACKAGES, PICTURE
 
 _OLD, _NEW = "bookworm", "trixie"
+_UPGRADED_WITHIN_S = 3600.0
 _KEEP = ("-o", "Dpkg::Options::=--force-confold", "-o", "APT::Sandbox::User=root")
 
 
 def upgrade(deb: Path, folder: Path) -> None:
     """Print each step. Raises AssertionError where it does not draw afterwards as it drew before."""
-    with machine(archive(_OLD, _arch(deb), BOOT_PACKAGES), folder, boot=False) as debian:
+    with machine(archive(_OLD, arch_of(deb), BOOT_PACKAGES), folder, boot=False) as debian:
         root = debian.root
         shutil.copy(deb, root / "root")
         shutil.copy(PICTURE, root / "root/house.png")
@@ -29,11 +29,12 @@ def upgrade(deb: Path, folder: Path) -> None:
         debian.run("dpkg", "-i", f"/root/{deb.name}")
         before = _drawn(root, "before")
         print(f"{_OLD}: {_made(root)}", flush=True)
-        lines = sources(_NEW) or [f"deb http://deb.debian.org/debian {_NEW} main"]
-        (root / "etc/apt/sources.list").write_text("".join(f"{line}\n" for line in lines))
+        # The new one comes from where the old one came from.
+        sources = root / "etc/apt/sources.list"
+        sources.write_text(sources.read_text().replace(_OLD, _NEW))
         for words in (("update",), ("--yes", "dist-upgrade"), ("--yes", "autoremove")):
-            said = _apt(root, *words)
-            print("".join(f"    {line}\n" for line in said.splitlines() if "linedrawd" in line), end="", flush=True)
+            printed = _apt(root, *words)
+            print("".join(f"    {line}\n" for line in printed.splitlines() if "linedrawd" in line), end="", flush=True)
         print(f"{_NEW}: {_made(root)}", flush=True)
         assert _made(root).endswith("python3.13")
         assert not (root / "usr/bin/python3.11").exists()
@@ -57,19 +58,9 @@ def _apt(root: Path, *words: str) -> str:
 
 
 def _inside(root: Path, *command: str) -> str:
-    environment = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"}
     proxies = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
-    done = subprocess.run(
-        ["chroot", root, *command], env=environment | proxies, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT, text=True, check=False, timeout=3600,
-    )  # fmt: skip
-    assert done.returncode == 0, f"{' '.join(command)} ended with {done.returncode}: {done.stdout[-3000:]}"
-    return done.stdout
-
-
-def _arch(deb: Path) -> str:
-    said = subprocess.run(["dpkg-deb", "-f", deb, "Architecture"], capture_output=True, text=True, check=True)
-    return said.stdout.strip()
+    environment = {**ENVIRONMENT, "DEBIAN_FRONTEND": "noninteractive", **proxies}
+    return said(["chroot", str(root), *command], env=environment, within_s=_UPGRADED_WITHIN_S)
 
 
 if __name__ == "__main__":

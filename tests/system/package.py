@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 
 from tests.daemon.intake.vector.pdfs import pdf
-from tests.system.debian_root import PROJECT, PYTHONS, Machine, archive, host_suite, machine
+from tests.system.debian_root import PROJECT, PYTHONS, Machine, arch_of, archive, host_suite, machine
 
 READY_WITHIN_S, FIRST_LINE_WITHIN_S, EXPOSURE = 2.0, 6.0, 1.5
 """The bars of a cold start, which the figures are printed with, and of what systemd calls exposure."""
@@ -44,8 +44,7 @@ def build(out: Path, *, suite: str) -> Path:
 def whole_life(deb: Path, suite: str, folder: Path, say: Say, *, boot: bool = True) -> None:
     """Every step, in order. Raises AssertionError where one does not do what it should."""
     began_s = time.monotonic()
-    said = subprocess.run(["dpkg-deb", "-f", deb, "Architecture"], capture_output=True, text=True, check=True)
-    arch = said.stdout.strip()
+    arch = arch_of(deb)
     tar = archive(suite, arch, BOOT_PACKAGES)
     say(f"an empty Debian ({suite}, {arch}) is there after {time.monotonic() - began_s:.0f} s")
     with machine(tar, folder, boot=boot) as debian:

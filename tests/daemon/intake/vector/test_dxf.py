@@ -18,6 +18,7 @@ from daemon.intake.vector.common import Vectors
 from daemon.intake.vector.dxf import read_dxf
 from daemon.intake.vector.sheet import VectorPage
 from daemon.shapes import Points
+from tests.daemon.intake.vector.refused import assert_refused
 
 MM, INCH, NONE = 4, 1, 0
 
@@ -190,10 +191,7 @@ def test_what_cannot_be_read_is_refused_with_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, data: bytes, words: str
 ) -> None:
     monkeypatch.setattr(dxf, "MOST_ENTITIES", 2000)
-    (tmp_path / "bad.dxf").write_bytes(data)
-    with pytest.raises(BadPicture, match=words) as found:
-        open_picture(tmp_path / "bad.dxf", name="bad.dxf")
-    assert str(found.value).startswith("bad.dxf is a DXF that ")
+    assert_refused(tmp_path / "bad.dxf", data, "a DXF", words)
 
 
 def test_without_the_library_the_command_that_installs_it_is_said(

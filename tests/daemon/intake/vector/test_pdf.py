@@ -20,6 +20,7 @@ from daemon.intake.vector.pdf import pages_of_pdf, read_pdf
 from daemon.intake.vector.sheet import as_page
 from daemon.shapes import Grey
 from tests.daemon.intake.vector.pdfs import ENCRYPTED, FONT, object_stream, pdf, stream
+from tests.daemon.intake.vector.refused import assert_refused
 
 PT = 25.4 / 72
 TEXT = "BT /F 12 Tf 10 20 Td (hello) Tj ET 0 0 m 9 9 l S"
@@ -247,10 +248,7 @@ def test_what_cannot_be_read_is_refused_with_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, data: bytes, words: str
 ) -> None:
     monkeypatch.setattr(pdf_paths, "_MOST_OBJECTS", 1000)
-    (tmp_path / "bad.pdf").write_bytes(data)
-    with pytest.raises(BadPicture, match=words) as found:
-        open_picture(tmp_path / "bad.pdf", name="bad.pdf")
-    assert str(found.value).startswith("bad.pdf is a PDF that ")
+    assert_refused(tmp_path / "bad.pdf", data, "a PDF", words)
 
 
 def test_a_page_that_is_not_there_is_refused() -> None:

@@ -14,6 +14,7 @@ from daemon.intake.vector.common import Vectors
 from daemon.intake.vector.sheet import VectorPage
 from daemon.intake.vector.svg import read_svg
 from daemon.shapes import Points
+from tests.daemon.intake.vector.refused import assert_refused
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
 LINES = 'width="100mm" height="80mm" viewBox="0 0 100 80" fill="none" stroke="black">'
@@ -215,10 +216,7 @@ def test_what_cannot_or_must_not_be_read_is_refused_with_a_sentence(
 ) -> None:
     monkeypatch.setattr(svg, "MOST_ELEMENTS", 2000)
     monkeypatch.setattr(svg_path, "MOST_POINTS", 5000)
-    (tmp_path / "bad.svg").write_text(body)
-    with pytest.raises(BadPicture, match=words) as found:
-        open_picture(tmp_path / "bad.svg", name="bad.svg")
-    assert str(found.value).startswith("bad.svg is an SVG that ")
+    assert_refused(tmp_path / "bad.svg", body.encode(), "an SVG", words)
 
 
 def test_an_svg_of_200_megabytes_is_refused_before_it_is_read(tmp_path: Path) -> None:
