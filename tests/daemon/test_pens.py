@@ -18,7 +18,7 @@ from tests.daemon.intake.buttons import ENTER
 from tests.daemon.test_button import keypad, press
 from tests.daemon.test_every_device import farthest_mm
 from tests.daemon.test_service import Daemon, ended, loaded, running
-from tests.drawings.colours import PENS
+from tests.drawings.colours import SECTION
 
 __all__ = ["keypad"]
 """A fixture."""
@@ -27,8 +27,7 @@ SVG = Path(__file__).parents[1] / "drawings" / "three_colours.svg"
 
 
 def settings_of(root: Path, device: str, *, more: str = "") -> Settings:
-    colours = ", ".join(f'{name} = "{colour}"' for name, colour in PENS.items())
-    return loaded(root, f"[pens]\ncolours = {{ {colours} }}\n{more}\n", device=device, port=f"sim://{device}")
+    return loaded(root, f"{SECTION}{more}\n", device=device, port=f"sim://{device}")
 
 
 def at_pen_change(daemon: Daemon, pen: str) -> Job:

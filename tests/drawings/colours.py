@@ -12,6 +12,8 @@ from tests.drawings.hand import by_hand, curve, inked, line, ring
 
 HERE = Path(__file__).parent
 PENS = {"black": "#1a1a1a", "red": "#d03030", "blue": "#2040c0"}
+SECTION = "[pens]\ncolours = { " + ", ".join(f'{name} = "{colour}"' for name, colour in PENS.items()) + " }\n"
+"""What the settings say of them."""
 SIDE_PX, WIDTH_PX = 600, 4.0
 
 

@@ -23,7 +23,7 @@ from daemon.report.canvas import Picture
 from daemon.report.contact_sheet import Row, contact_sheet
 from daemon.report.preview import in_words
 from tests.demo import Seen, daemon, drop, row_of, wait_for
-from tests.drawings.colours import PENS
+from tests.drawings.colours import SECTION
 from tests.gallery.inputs import DRAWINGS, Input, kinds
 
 _DOCS = Path(__file__).parents[2] / "docs"
@@ -74,8 +74,7 @@ def with_pens() -> Picture:
     given = DRAWINGS / "three_colours.png"
     with tempfile.TemporaryDirectory() as folder:
         toml = Path(folder) / "pens.toml"
-        colours = ", ".join(f'{name} = "{colour}"' for name, colour in PENS.items())
-        toml.write_text(f"[pens]\ncolours = {{ {colours} }}\n", encoding="utf-8")
+        toml.write_text(SECTION, encoding="utf-8")
         settings = load_settings(Options(config=toml, device="sim", state_dir=Path(folder)))
         plan_picture(given, Path(folder), settings, *settings.machines)
         pictures = [cv2.imread(str(path), cv2.IMREAD_COLOR) for path in (given, Path(folder) / "preview.png")]
